@@ -1,0 +1,3 @@
+//! The command line, thin.
+
+pub mod load;

@@ -1,0 +1,19 @@
+//! Aliases over nalgebra's f64 types, frames, and the kernel's own small types.
+
+/// 3-vector.
+pub type Vec3 = nalgebra::Vector3<f64>;
+/// 3×3 matrix.
+pub type Mat3 = nalgebra::Matrix3<f64>;
+/// Unit quaternion.
+pub type Quat = nalgebra::UnitQuaternion<f64>;
+/// Rigid transform `X_AB`: coordinates in B → coordinates in A.
+pub type Pose = nalgebra::Isometry3<f64>;
+
+/// Velocity of a frame: angular (rad/s) first, linear (m/s) of its origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twist {
+    /// rad/s.
+    pub angular: Vec3,
+    /// m/s.
+    pub linear: Vec3,
+}

@@ -1,0 +1,30 @@
+//! What a controller tells the axes.
+
+pub use crate::description::DriveMode as Mode;
+
+/// Inputs of one axis' drive. Units: N·m, rad/s, rad; for a linear axis N, m/s, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisCommand {
+    /// Mode.
+    pub mode: Mode,
+    /// Applied torque: signed in torque mode; in servo mode its magnitude bounds the drive torque. NaN = not given
+    /// (torque mode: 0; servo mode: the axis' maximum).
+    pub torque: f64,
+    /// Applied speed (no-load speed at the applied voltage); NaN = not given (the axis' maximum).
+    pub speed: f64,
+    /// Servo target.
+    pub target: f64,
+}
+
+impl AxisCommand {
+    /// The drive gives no torque.
+    pub const IDLE: Self = Self { mode: Mode::Idle, torque: f64::NAN, speed: f64::NAN, target: 0.0 };
+    /// Applied torque.
+    pub fn torque(torque: f64) -> Self {
+        Self { mode: Mode::Torque, torque, ..Self::IDLE }
+    }
+    /// Servo target.
+    pub fn servo(target: f64) -> Self {
+        Self { mode: Mode::Servo, target, ..Self::IDLE }
+    }
+}
