@@ -9,7 +9,7 @@ use super::articulated::{Acc, Art, Spatial};
 use super::ball::{Ball, BallIn, eliminate_ball, eliminate_floating};
 use super::joint::{bias, joint_transform, joint_velocity, universal_axis};
 use crate::math::{Fma, M3, Real, S3, V3};
-use crate::model::{Body, JointType, Model};
+use crate::model::{AxisSlot, Body, JointType, Model};
 
 /// Frame and motion of a body; its velocity gives way to its acceleration in the last pass.
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,6 +63,15 @@ impl<T: Real> Workspace<T> {
         }
     }
 
+    /// Acceleration per torque of an axis in the last solve, with what hangs on it free and its base held: 1/D of the
+    /// articulated inertia, an upper bound of how fast a viscous term on it can be.
+    pub fn mobility(&self, m: &Model, axis: usize) -> T {
+        match m.axes[axis].slot {
+            AxisSlot::Scalar { v, .. } => self.dof[v].d,
+            AxisSlot::Euler { group, angle } => self.balls[m.bodies[m.eulers[group].body].ball].mobility(angle),
+        }
+    }
+
     /// Acceleration of the world minus gravity.
     #[inline(always)]
     pub(crate) fn start(&mut self, gravity: [f64; 3]) {
@@ -74,7 +83,14 @@ impl<T: Real> Workspace<T> {
 /// Accelerations `qdd` (nv) of the state `q` (nq), `v` (nv) under torques `tau` (nv) and gravity (m/s², world).
 ///
 /// The same bits on every machine. Lengths must fit the model.
-pub fn aba(m: &Model, ws: &mut Workspace<f64>, state: (&[f64], &[f64]), tau: &[f64], gravity: [f64; 3], qdd: &mut [f64]) {
+pub fn aba(
+    m: &Model,
+    ws: &mut Workspace<f64>,
+    state: (&[f64], &[f64]),
+    tau: &[f64],
+    gravity: [f64; 3],
+    qdd: &mut [f64],
+) {
     kernel::<f64, false>(m, ws, state, tau, gravity, qdd);
 }
 
@@ -264,7 +280,12 @@ fn outward<T: Real, const HYBRID: bool>(
 
 /// Acceleration of one degree of freedom, given that of the frame it moves against.
 #[inline(always)]
-fn scalar_out<T: Real, const HYBRID: bool>(ws: &mut Workspace<T>, k: usize, (a, l): (V3<T>, V3<T>), qdd: &mut [T]) -> T {
+fn scalar_out<T: Real, const HYBRID: bool>(
+    ws: &mut Workspace<T>,
+    k: usize,
+    (a, l): (V3<T>, V3<T>),
+    qdd: &mut [T],
+) -> T {
     let d = ws.dof[k];
     let reach = d.ua.dot(a) + d.ul.dot(l);
     let acceleration = (-d.d).mad(reach, d.x);
@@ -279,9 +300,7 @@ fn scalar_out<T: Real, const HYBRID: bool>(ws: &mut Workspace<T>, k: usize, (a, 
 pub(crate) fn joint_transform_p<T: Real>(b: &Body, q: &[T]) -> V3<T> {
     match b.joint {
         JointType::Prismatic => V3::of(b.tree_r.col2()).mad(q[b.q], V3::of(b.tree_p)),
-        JointType::Floating => {
-            M3::of(&b.tree_r).mv(V3::new(q[b.q], q[b.q + 1], q[b.q + 2])) + V3::of(b.tree_p)
-        }
+        JointType::Floating => M3::of(&b.tree_r).mv(V3::new(q[b.q], q[b.q + 1], q[b.q + 2])) + V3::of(b.tree_p),
         _ => V3::of(b.tree_p),
     }
 }
@@ -364,9 +383,5 @@ fn flat_rotated<T: Real>(r: &M3<T>, xx: T, xy: T, yy: T) -> S3<T> {
 /// `R [g0; g1; 0]` where the rows are already turned.
 #[inline(always)]
 fn outer2<T: Real>(r: &M3<T>, g0: V3<T>, g1: V3<T>) -> M3<T> {
-    M3::rows(
-        g0.mad(r.r[0].x, g1 * r.r[0].y),
-        g0.mad(r.r[1].x, g1 * r.r[1].y),
-        g0.mad(r.r[2].x, g1 * r.r[2].y),
-    )
+    M3::rows(g0.mad(r.r[0].x, g1 * r.r[0].y), g0.mad(r.r[1].x, g1 * r.r[1].y), g0.mad(r.r[2].x, g1 * r.r[2].y))
 }

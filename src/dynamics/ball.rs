@@ -49,6 +49,15 @@ impl<T: Real> Ball<T> {
         self.x - self.p.mv(self.reach(a))
     }
 
+    /// Diagonal of `D⁻¹`.
+    pub fn mobility(&self, direction: usize) -> T {
+        match direction {
+            0 => self.inverse.xx,
+            1 => self.inverse.yy,
+            _ => self.inverse.zz,
+        }
+    }
+
     #[inline(always)]
     fn reach(&self, a: Spatial<T>) -> V3<T> {
         self.ua.mv(a.a) + self.ul.mv(a.l)

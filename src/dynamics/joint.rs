@@ -74,9 +74,7 @@ pub(crate) fn bias<T: Real>(b: &Body, q: &[T], v: &[T], (w, l): (V3<T>, V3<T>)) 
     let o = T::of(0.0);
     let s = v[b.v];
     match b.joint {
-        JointType::Revolute => {
-            Spatial { a: V3::new(w.y * s, -(w.x * s), o), l: V3::new(l.y * s, -(l.x * s), o) }
-        }
+        JointType::Revolute => Spatial { a: V3::new(w.y * s, -(w.x * s), o), l: V3::new(l.y * s, -(l.x * s), o) },
         JointType::Prismatic => Spatial { a: V3::default(), l: V3::new(w.y * s, -(w.x * s), o) },
         JointType::Universal => {
             let first = universal_axis(q[b.q + 1].sin_cos());

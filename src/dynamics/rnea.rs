@@ -7,7 +7,14 @@ use crate::math::{M3, Real, S3, V3};
 use crate::model::{Body, JointType, Model};
 
 /// Torques `tau` (nv) that give the accelerations `qdd` (nv) in the state `q` (nq), `v` (nv) under gravity (m/s², world).
-pub fn rnea(m: &Model, ws: &mut Workspace<f64>, state: (&[f64], &[f64]), qdd: &[f64], gravity: [f64; 3], tau: &mut [f64]) {
+pub fn rnea(
+    m: &Model,
+    ws: &mut Workspace<f64>,
+    state: (&[f64], &[f64]),
+    qdd: &[f64],
+    gravity: [f64; 3],
+    tau: &mut [f64],
+) {
     kernel(m, ws, state, qdd, gravity, tau);
 }
 
@@ -39,10 +46,7 @@ fn outward<T: Real>(m: &Model, ws: &mut Workspace<T>, i: usize, (q, v): (&[T], &
     let c = bias(b, q, v, (kin.w, kin.v));
     let own = super::joint::joint_velocity(b, q, qdd);
     let p = joint_transform_p(b, q);
-    let a = Spatial {
-        a: kin.r.tv(parent.w) + c.a + own.a,
-        l: kin.r.tv(parent.w.cross_add(p, parent.v)) + c.l + own.l,
-    };
+    let a = Spatial { a: kin.r.tv(parent.w) + c.a + own.a, l: kin.r.tv(parent.w.cross_add(p, parent.v)) + c.l + own.l };
     let force = body_force(b, (kin.w, kin.v), a);
     ws.acc[i].n = force.a;
     ws.acc[i].f = force.l;

@@ -52,11 +52,7 @@ impl<T: Real> V3<T> {
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
-        Self::new(
-            self.y.mad(b.z, -(self.z * b.y)),
-            self.z.mad(b.x, -(self.x * b.z)),
-            self.x.mad(b.y, -(self.y * b.x)),
-        )
+        Self::new(self.y.mad(b.z, -(self.z * b.y)), self.z.mad(b.x, -(self.x * b.z)), self.x.mad(b.y, -(self.y * b.x)))
     }
     /// `self × b + c`.
     #[inline(always)]
