@@ -27,7 +27,7 @@ pub struct Finding {
     pub element: String,
     /// Where.
     pub at: Position,
-    /// What to do about it.
+    /// What to do about it; empty for a note that asks for nothing.
     pub mend: String,
 }
 
@@ -76,11 +76,13 @@ fn render_one(finding: &Finding, file: &str, text: &str, renderer: &Renderer) ->
     };
     let span = finding.at.start.min(text.len())..finding.at.end.min(text.len());
     let underline = AnnotationKind::Primary.span(span).label(finding.element.as_str());
-    let group = level
+    let mut group = level
         .primary_title(finding.message.as_str())
         .id(finding.code)
-        .element(Snippet::source(text).path(file).annotation(underline))
-        .element(Level::HELP.with_name("mend").message(finding.mend.as_str()));
+        .element(Snippet::source(text).path(file).annotation(underline));
+    if !finding.mend.is_empty() {
+        group = group.element(Level::HELP.with_name("mend").message(finding.mend.as_str()));
+    }
     renderer.render(&[group])
 }
 

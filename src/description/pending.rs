@@ -47,6 +47,6 @@ pub(super) fn note(name: &str, element: &Element, report: &mut Report) {
             Some(attribute) => (element.place_of(attribute, report), format!("<{name} {attribute}>")),
         };
         let message = format!("{what} is read but not simulated yet: {}", row.instead);
-        report.add_once(&what, Finding::note("not-simulated-yet", place, message, "nothing to do"));
+        report.add_once(&what, Finding::note("not-simulated-yet", place, message, ""));
     }
 }

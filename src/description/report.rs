@@ -4,8 +4,8 @@ use super::Position;
 use super::finding::{Finding, Severity};
 use std::ops::Range;
 
-/// Elements named in a finding that stands for many of its kind.
-const NAMED_OF_MANY: usize = 4;
+/// Lines named in a finding that stands for many of its kind.
+const LINES_OF_MANY: usize = 6;
 
 /// The findings of one reading.
 pub(super) struct Report<'t> {
@@ -18,11 +18,11 @@ pub(super) struct Report<'t> {
     ceiling: Severity,
 }
 
-/// Findings that are told once: the index of the first one, and the elements of the others.
+/// Findings that are told once: the index of the first one, and the lines of the others.
 struct Kind {
     key: (&'static str, String),
     first: usize,
-    others: Vec<String>,
+    others: Vec<u32>,
 }
 
 impl<'t> Report<'t> {
@@ -67,11 +67,11 @@ impl<'t> Report<'t> {
         self.findings.push(finding);
     }
 
-    /// Adds a finding that is told once per `key`; later ones are only counted and named.
+    /// Adds a finding that is told once per `key`; later ones are only counted, and their lines given.
     pub fn add_once(&mut self, key: &str, finding: Finding) {
         let key = (finding.code, key.to_string());
         match self.kinds.iter_mut().find(|kind| kind.key == key) {
-            Some(kind) => kind.others.push(finding.element),
+            Some(kind) => kind.others.push(finding.at.line),
             None => {
                 self.kinds.push(Kind { key, first: self.findings.len(), others: vec![] });
                 self.add(finding);
@@ -100,12 +100,10 @@ impl<'t> Report<'t> {
     /// All findings: errors first, then warnings, then notes, each in the order of the text.
     pub fn finish(mut self) -> Vec<Finding> {
         for kind in self.kinds.iter().filter(|kind| !kind.others.is_empty()) {
-            let mut named = kind.others.clone();
-            named.dedup();
-            let more = if named.len() > NAMED_OF_MANY { ", …" } else { "" };
-            named.truncate(NAMED_OF_MANY);
+            let lines: Vec<_> = kind.others.iter().take(LINES_OF_MANY).map(u32::to_string).collect();
+            let more = if kind.others.len() > LINES_OF_MANY { ", …" } else { "" };
             let total = kind.others.len() + 1;
-            let tail = format!("; {total} of them in all: also {}{more}", named.join(", "));
+            let tail = format!(" ({total} of them, also in lines {}{more})", lines.join(", "));
             self.findings[kind.first].message.push_str(&tail);
         }
         self.findings.sort_by_key(|f| (std::cmp::Reverse(f.severity), f.at.start));

@@ -43,11 +43,12 @@ fn ignored(element: &Element, child: &Element, known: &[&'static str], report: &
             let mend = format!("did you mean <{near}>?");
             Finding::warning("ignored-element", child.place(report), message, mend)
         }
-        None => Finding::note("ignored-element", child.place(report), message, "nothing to do"),
+        None => Finding::note("ignored-element", child.place(report), message, ""),
     }
 }
 
-/// Warns about attributes that are not in `known`, once per kind; attributes of foreign namespaces are theirs.
+/// Tells about attributes that are not in `known`, once per kind: a note, or a warning where the name looks
+/// misspelt. Attributes of foreign namespaces are theirs.
 pub(super) fn attributes(element: &Element, known: &[&'static str], report: &mut Report) {
     for attribute in element.node.attributes() {
         let name = attribute.name();
@@ -57,11 +58,11 @@ pub(super) fn attributes(element: &Element, known: &[&'static str], report: &mut
         let mut place = element.place(report);
         place.at = report.position(attribute.range_qname());
         let message = format!("<{}> has no attribute `{name}` in URDF: it is ignored", element.tag());
-        let mend = suggest::mend(name, known.iter().copied(), "known attributes");
-        report.add_once(
-            &format!("{} {name}", element.tag()),
-            Finding::warning("ignored-attribute", place, message, mend),
-        );
+        let finding = match suggest::nearest(name, known.iter().copied()) {
+            Some(near) => Finding::warning("ignored-attribute", place, message, format!("did you mean `{near}`?")),
+            None => Finding::note("ignored-attribute", place, message, ""),
+        };
+        report.add_once(&format!("{} {name}", element.tag()), finding);
     }
 }
 

@@ -1,77 +1,20 @@
-//! Masses and inertias: possible ones, and enough of them for every moving link.
+//! Mass: where it comes from, and that there is some for every moving link.
 
 use super::super::finding::{Finding, Place};
 use super::super::report::Report;
-use super::super::{Description, Inertial, JointKind, Link};
+use super::super::{Description, JointKind, Link};
 use super::tree::Tree;
 use super::{place_of_joint, place_of_link};
-use crate::math::Mat3;
-
-/// Relative to the greatest principal moment: what rounding in a text may take from an inertia.
-const ROUNDING: f64 = 1e-3;
-/// A principal moment below −this × the greatest one makes the inertia no inertia.
-const NEGATIVE: f64 = 1e-6;
-/// The greatest principal moment can be no more than the sum of the others; beyond this factor it is an error.
-const TRIANGLE_FACTOR: f64 = 2.0;
 
 /// All checks of mass; those over subtrees only if there is a tree.
 pub(super) fn check(d: &Description, tree: Option<&Tree>, report: &mut Report) {
     for link in &d.links {
-        if let Some(inertial) = &link.inertial {
-            check_inertial(link, inertial, report);
-        }
         check_body(link, report);
     }
     if let Some(tree) = tree {
         refuse_massless_leaves(d, tree, report);
         refuse_static_moving(d, tree, report);
     }
-}
-
-fn check_inertial(link: &Link, inertial: &Inertial, report: &mut Report) {
-    let place = Place { element: format!("link '{}' <inertial>", link.name), at: inertial.at };
-    if inertial.mass < 0.0 {
-        let message = format!("the mass is negative: {} kg", inertial.mass);
-        report.add(Finding::error("negative-mass", place.clone(), message, "a mass is 0 or greater"));
-    }
-    let zero = inertial.inertia.iter().all(|i| *i == 0.0);
-    if zero && inertial.mass > 0.0 {
-        let message = format!("{} kg with no inertia: simulated as a point mass", inertial.mass);
-        let mend = "give the inertia about the centre of mass";
-        report.add_once("", Finding::warning("zero-inertia", place, message, mend));
-    } else if !zero && inertial.mass == 0.0 {
-        let message = "an inertia without a mass".to_string();
-        report.add_once("", Finding::warning("inertia-without-mass", place, message, "give the mass, or make both 0"));
-    } else if !zero {
-        report_impossible_inertia(inertial.inertia, place, report);
-    }
-}
-
-fn report_impossible_inertia(inertia: [f64; 6], place: Place, report: &mut Report) {
-    let [a, b, c] = principal_moments(inertia);
-    let shown = format!("the principal moments are {a:.4e}, {b:.4e}, {c:.4e} kg·m²");
-    let mend = "compute it anew about the centre of mass; check the signs of ixy, ixz, iyz, and the units (kg·m²)";
-    if a < -NEGATIVE * c.abs() {
-        let message = format!("this is no inertia: {shown}, none may be negative");
-        report.add(Finding::error("no-inertia", place, message, mend));
-    } else if c > TRIANGLE_FACTOR * (a + b) {
-        let message = format!("this is no inertia: {shown}, none may exceed the sum of the other two");
-        report.add(Finding::error("no-inertia", place, message, mend));
-    } else if c > (a + b) * (1.0 + ROUNDING) {
-        let message = format!("no real body has this inertia: {shown}, none may exceed the sum of the other two");
-        report.add_once("", Finding::warning("odd-inertia", place, message, mend));
-    }
-}
-
-/// Ascending.
-fn principal_moments([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> [f64; 3] {
-    let tensor = Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    // Scaled, so that neither squares nor their sums overflow.
-    let scale = tensor.amax();
-    let moments = (tensor / scale).symmetric_eigenvalues() * scale;
-    let mut sorted = [moments.x, moments.y, moments.z];
-    sorted.sort_by(f64::total_cmp);
-    sorted
 }
 
 fn check_body(link: &Link, report: &mut Report) {
@@ -109,14 +52,16 @@ fn refuse_massless_leaves(d: &Description, tree: &Tree, report: &mut Report) {
             carries[link] = true;
         }
     }
-    for (joint, (_, child)) in d.joints.iter().zip(&tree.ends) {
-        if joint.kind != JointKind::Fixed && !carries[*child] {
+    for (joint, (parent, child)) in d.joints.iter().zip(&tree.ends) {
+        // Further out in a branch without mass it is the same fault again.
+        let outermost = carries[*parent] || tree.joint_above[*parent].is_none();
+        if joint.kind != JointKind::Fixed && !carries[*child] && outermost {
             let message = format!(
                 "joint '{}' moves link '{}', but neither it nor what hangs on it has mass",
                 joint.name, joint.child
             );
             let mend = "give the link an <inertial> or a <body>, or make the joint fixed";
-            report.add(Finding::error("massless-leaf", place_of_joint(joint), message, mend));
+            report.add_once("", Finding::error("massless-leaf", place_of_joint(joint), message, mend));
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Checks over the whole description, after all items have been read.
 
 mod groups;
+mod inertias;
 mod masses;
 mod names;
 mod ranges;
+mod rigid;
 mod sides;
 mod tree;
 
@@ -19,6 +21,7 @@ use super::{Joint, Link};
 pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints_read: bool, report: &mut Report) {
     names::check(d, report);
     let tree = tree::check(d, robot, all_joints_read, report);
+    inertias::check(d, tree.as_ref(), report);
     masses::check(d, tree.as_ref(), report);
     groups::check(d, tags, report);
     ranges::check(d, report);
