@@ -145,6 +145,8 @@ pub struct Body {
     pub dimension: Dimension,
     /// Factor on the distance used in the moment of inertia (B-18); 1 by default.
     pub l_scale: f64,
+    /// Shapes that carry the mass; empty = the link's visuals.
+    pub shapes: Vec<PlacedShape>,
 }
 
 /// `<surface>` (B-8).

@@ -1,5 +1,7 @@
 //! Aliases over nalgebra's f64 types, frames, and the kernel's own small types.
 
+pub mod frames;
+
 /// 3-vector.
 pub type Vec3 = nalgebra::Vector3<f64>;
 /// 3×3 matrix.
