@@ -150,6 +150,16 @@ fn static_is_allowed_where_nothing_moves_it() {
 }
 
 #[test]
+fn a_density_that_is_none_gives_no_mass_and_an_error() {
+    for gravity in [-1.0, f64::NAN, f64::INFINITY] {
+        let mut only = link("only");
+        only.body = Some(body(gravity, vec![placed(CUBE, [0.0; 3], [0.0; 3])]));
+        let (masses, findings) = link_masses(&robot(vec![only], vec![]));
+        assert_eq!((masses[0].mass, findings[0].code), (0.0, "specific-gravity"));
+    }
+}
+
+#[test]
 fn a_cycle_does_not_hang() {
     let joints = vec![joint(JointKind::Fixed, "a", "b"), joint(JointKind::Fixed, "b", "a")];
     assert_eq!(link_masses(&robot(vec![link("a"), link("b")], joints)).0.len(), 2);

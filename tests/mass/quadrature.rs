@@ -6,7 +6,7 @@ use realnoid::math::{Mat3, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Weighted points: the integral of f is Σ w·f(point).
-type Cloud = Vec<(f64, Vec3)>;
+pub type Cloud = Vec<(f64, Vec3)>;
 
 /// Mass properties at unit density (solid) or unit thickness × density (hollow), by quadrature.
 pub fn reference(geometry: &Geometry, dimension: Dimension) -> MassProperties {
@@ -178,7 +178,8 @@ fn faces([x, y, z]: [f64; 3]) -> Cloud {
     (0..3).flat_map(|axis| [face(axis, -1.0), face(axis, 1.0)].concat()).collect()
 }
 
-fn surface(geometry: &Geometry) -> Cloud {
+/// Points on the surface.
+pub fn surface(geometry: &Geometry) -> Cloud {
     let frustum = |a: f64, b: f64, top: f64, length: f64| {
         let low = ring((a, b), 0.0, -length / 2.0);
         let high = if top > 0.0 { ring((a * top, b * top), 0.0, length / 2.0) } else { Vec::new() };
