@@ -31,6 +31,9 @@ fn properties(cloud: &Cloud) -> MassProperties {
     MassProperties { mass, center, inertia }
 }
 
+/// Semi-axes of the section at a height.
+type Section = Box<dyn Fn(f64) -> (f64, f64)>;
+
 /// Gauss–Legendre points of order 8 on `panels` equal parts of [from, to].
 fn gauss(from: f64, to: f64, panels: usize) -> Vec<(f64, f64)> {
     // Roots of P₈ by Newton's method from the usual cosine guess.
@@ -101,8 +104,8 @@ fn solid(geometry: &Geometry) -> Cloud {
 }
 
 /// Break points in height and the semi-axes of the section at a height.
-fn profile(geometry: &Geometry) -> (Vec<f64>, Box<dyn Fn(f64) -> (f64, f64)>) {
-    let prism = |a: f64, b: f64, top: f64, length: f64| -> (Vec<f64>, Box<dyn Fn(f64) -> (f64, f64)>) {
+fn profile(geometry: &Geometry) -> (Vec<f64>, Section) {
+    let prism = |a: f64, b: f64, top: f64, length: f64| -> (Vec<f64>, Section) {
         let scale = move |z: f64| 1.0 + (top - 1.0) * (z / length + 0.5);
         (vec![-length / 2.0, length / 2.0], Box::new(move |z| (a * scale(z), b * scale(z))))
     };
