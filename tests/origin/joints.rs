@@ -1,7 +1,7 @@
 //! Axes, groups, ranges and drives.
 
 use super::body::twin;
-use super::reader::{TEXT, child, numbers, read};
+use super::reader::{TEXT, child, number, read};
 use realnoid::description::*;
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -106,8 +106,8 @@ fn drives_and_limits_say_the_same_and_drives_start_without_torque() {
     for node in document.root_element().children().filter(|n| n.attribute("type") == Some("revolute")) {
         let limit = child(node, "limit").unwrap();
         let drive = child(child(node, "realnoid").unwrap(), "drive").unwrap();
-        assert_eq!(numbers::<1>(drive, "max_torque"), numbers::<1>(limit, "effort"), "{node:?}");
-        assert_eq!(numbers::<1>(drive, "no_load_speed"), numbers::<1>(limit, "velocity"), "{node:?}");
+        assert_eq!(number(drive, "max_torque"), number(limit, "effort"), "{node:?}");
+        assert_eq!(number(drive, "no_load_speed"), number(limit, "velocity"), "{node:?}");
         assert_eq!(drive.attribute("mode"), Some("torque"), "{node:?}");
     }
 }
