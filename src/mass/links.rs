@@ -48,6 +48,10 @@ fn from_tag(link: &Link, body: &Body, moves: bool, findings: &mut Vec<Finding>) 
         findings.extend(moves.then(|| static_in_chain(link, body)));
         return MassProperties::ZERO;
     }
+    if !(body.specific_gravity > 0.0 && body.specific_gravity.is_finite()) {
+        findings.push(no_density(link, body));
+        return MassProperties::ZERO;
+    }
     let shapes = if body.shapes.is_empty() { &link.visuals } else { &body.shapes };
     if shapes.is_empty() {
         findings.push(no_shape(link, body));
@@ -97,6 +101,17 @@ fn static_in_chain(link: &Link, body: &Body) -> Finding {
     }
 }
 
+fn no_density(link: &Link, body: &Body) -> Finding {
+    Finding {
+        severity: Severity::Error,
+        code: "specific-gravity",
+        message: format!("specific gravity {} is no density", body.specific_gravity),
+        element: format!("link '{}' <body>", link.name),
+        at: body.at,
+        mend: "write a number above 0: 1 is water, 2.7 aluminium, 7.8 steel; 0 makes a link of the stand static".into(),
+    }
+}
+
 fn no_shape(link: &Link, body: &Body) -> Finding {
     Finding {
         severity: Severity::Error,
@@ -112,8 +127,8 @@ fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Finding {
     let (code, mend) = match refusal {
         Refusal::Later(_) => (
             "mass-from-shape-later",
-            "describe the mass by <body><shape> children (box, sphere, ellipsoid, cylinder, elliptic_cylinder, capsule, tube, cone, \
-             frustum), or write <inertial> and drop <body>",
+            "describe the mass by <body><shape> children (box, sphere, ellipsoid, cylinder, elliptic_cylinder, \
+             capsule, tube, cone, frustum), or write <inertial> and drop <body>",
         ),
         Refusal::NoVolume(..) => ("shape-without-volume", "write a size above 0, in metres"),
         Refusal::NoWall(_) => ("wall-without-thickness", "write thickness=\"0.003\" (metres), or dimension=\"3d\""),
