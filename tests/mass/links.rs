@@ -91,7 +91,7 @@ fn tag_beats_inertial_and_the_note_says_by_how_much() {
     let said = &findings[0].message;
     assert!(said.contains("mass is 1.500000 kg instead of 1.000000 kg (+50.0 %)"), "{said}");
     assert!(said.contains("5.00 mm away"), "{said}");
-    assert!(said.contains("(+50.0 % of the largest)"), "{said}");
+    assert!(said.contains("(50.0 % of the largest)"), "{said}");
 }
 
 /// A stand of two links that carries an arm of two; all of the specific gravity of the cube that each is.

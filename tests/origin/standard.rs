@@ -87,3 +87,15 @@ fn written_inertials_are_the_computed_ones() {
         assert_eq!(link.inertial.origin.xyz.0, <[f64; 3]>::from(mass.center), "{}", link.name);
     }
 }
+
+#[test]
+fn the_text_with_inertials_is_the_same_robot_and_raises_no_question() {
+    let description = read();
+    let (masses, _) = link_masses(&description);
+    let text = with_inertials(TEXT, &masses, &description);
+    let again = realnoid::description::read(&text, "origin.urdf").description.unwrap();
+    let (same, findings) = link_masses(&again);
+    assert_eq!(same, masses);
+    assert!(findings.is_empty(), "{findings:?}");
+    assert_eq!(with_inertials(&text, &same, &again), text, "writing twice changes nothing");
+}
