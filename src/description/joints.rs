@@ -95,7 +95,10 @@ fn read_axis(element: &Element, kind: Option<JointKind>, report: &mut Report) ->
         return DEFAULT;
     };
     unknown::attributes(&axis, &["xyz"], report);
-    let read = |report: &mut Report| axis.vector("xyz", Domain::Any, report);
+    let read = |report: &mut Report| {
+        axis.required("xyz", report)?;
+        axis.vector("xyz", Domain::Any, report)
+    };
     let xyz = if moves { read(report) } else { report.lenient(read) }.unwrap_or(DEFAULT);
     let length = xyz.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length > 0.0 && length.is_finite() {
@@ -147,7 +150,7 @@ fn range(limit: &Element, lower: Option<f64>, upper: Option<f64>, report: &mut R
     let given = [("lower", lower), ("upper", upper)].iter().all(|(name, x)| x.is_some() == limit.value(name).is_some());
     if low > high && given {
         let message = format!("lower = {low} is greater than upper = {high}");
-        let mend = "swap the two";
+        let mend = "swap the two, or mend a sign";
         report.add(Finding::error("lower-above-upper", limit.place_of("lower", report), message, mend));
     } else if low == high && given {
         let message = format!("the range is {low} to {high}: this axis cannot move");
