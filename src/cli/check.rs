@@ -1,7 +1,7 @@
 //! `realnoid check`: every finding with its line and mend.
 
 use crate::description::{self, Severity};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -24,7 +24,10 @@ pub fn run(path: Option<&Path>) -> ExitCode {
 /// The same for a text; `file` is its name in the report.
 pub fn check(text: &str, file: &str) -> ExitCode {
     let findings = description::read(text, file).findings;
-    print!("{}", description::render(&findings, file, text, std::io::stdout().is_terminal()));
+    let mut out = std::io::stdout();
+    let report = description::render(&findings, file, text, out.is_terminal());
+    // A reader that has gone away (`| head`) is no failure of the check.
+    let _ = out.write_all(report.as_bytes());
     if findings.iter().any(|f| f.severity == Severity::Error) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 

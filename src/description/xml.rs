@@ -74,6 +74,9 @@ fn explain(error: &Error, text: &str, at: usize) -> (String, &'static str) {
         Error::NoRootNode if text.trim().is_empty() => {
             ("the file is empty".into(), "give a URDF file: `<robot name=\"…\">` with links and joints")
         }
+        Error::UnknownToken(_) if !text.trim_start_matches('\u{feff}').trim_start().starts_with('<') => {
+            ("this text is not XML".into(), "give a URDF file, it starts with `<robot`")
+        }
         Error::NoRootNode => {
             ("there is no XML element in this text".into(), "give a URDF file, it starts with `<robot`")
         }
