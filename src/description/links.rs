@@ -40,9 +40,8 @@ fn read_inertial(element: &Element, report: &mut Report) -> Option<Inertial> {
     let origin = origin::read(element, report);
     let mass = child(element, "mass", "<mass value=\"1.5\"/>", report).and_then(|mass| read_mass(&mass, report));
     let tensor = child(element, "inertia", TENSOR, report);
-    let inertia_at = tensor.as_ref().unwrap_or(element).place(report).at;
     let inertia = tensor.and_then(|tensor| read_tensor(&tensor, report));
-    Some(Inertial { at: element.place(report).at, origin, mass: mass?, inertia: inertia?, inertia_at })
+    Some(Inertial { at: element.place(report).at, origin, mass: mass?, inertia: inertia? })
 }
 
 fn read_mass(element: &Element, report: &mut Report) -> Option<f64> {

@@ -84,8 +84,6 @@ pub struct Inertial {
     pub mass: f64,
     /// ixx, ixy, ixz, iyy, iyz, izz.
     pub inertia: [f64; 6],
-    /// Where `<inertia>` starts.
-    pub inertia_at: Position,
 }
 
 /// A shape with its place in the link.

@@ -1,8 +1,9 @@
 //! `<inertial>`: an inertia that is missing, or that no body can have.
 
+use super::super::element::Element;
 use super::super::finding::{Finding, Place};
 use super::super::report::Report;
-use super::super::{Description, Inertial, Link};
+use super::super::{Description, Inertial};
 use super::tree::Tree;
 use super::{rigid, rigid::Rigid};
 use crate::math::Mat3;
@@ -26,17 +27,18 @@ enum Verdict {
 }
 
 /// All links with `<inertial>`.
-pub(super) fn check(d: &Description, tree: Option<&Tree>, report: &mut Report) {
+pub(super) fn check(d: &Description, robot: &Element, tree: Option<&Tree>, report: &mut Report) {
     let bodies = tree.map(|tree| rigid::merge(d, tree)).unwrap_or_default();
-    for (i, link) in d.links.iter().enumerate() {
+    for (i, (link, element)) in d.links.iter().zip(robot.all("link")).enumerate() {
         if let Some(inertial) = &link.inertial {
-            check_inertial(link, inertial, bodies.get(i).copied().flatten(), report);
+            let tensor = element.all("inertial").flat_map(|e| e.all("inertia")).next();
+            let place = tensor.unwrap_or(element).place(report);
+            check_inertial(inertial, bodies.get(i).copied().flatten(), place, report);
         }
     }
 }
 
-fn check_inertial(link: &Link, inertial: &Inertial, body: Option<Rigid>, report: &mut Report) {
-    let place = Place { element: format!("link '{}' <inertia>", link.name), at: inertial.inertia_at };
+fn check_inertial(inertial: &Inertial, body: Option<Rigid>, place: Place, report: &mut Report) {
     let greatest = inertial.inertia.iter().fold(0.0_f64, |max, i| max.max(i.abs()));
     if inertial.mass > 0.0 && greatest <= POINT * inertial.mass {
         let message = format!("{} kg with no inertia: simulated as a point mass", inertial.mass);
