@@ -1,34 +1,29 @@
 //! `realnoid check`: every finding with its line and mend.
 
-use crate::description::{self, Severity};
+use super::load::examine;
+use crate::description::render;
+use crate::math::Pose;
+use crate::model::Base;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Prints every finding in the file to standard output; failure if one of them is an error, or if the file
-/// cannot be read.
+/// Prints every finding in the file (`None`: the embedded humanoid) to standard output; failure if one of them is an
+/// error, or if the file cannot be read.
 pub fn run(path: Option<&Path>) -> ExitCode {
-    let Some(path) = path else {
-        eprintln!("realnoid check: name a URDF file: realnoid check robot.urdf");
-        return ExitCode::FAILURE;
-    };
-    match read_text(path) {
-        Ok(text) => check(&text, &path.display().to_string()),
+    match examine(path, Base::Fixed, Pose::identity()) {
+        Ok(examined) => {
+            let mut out = std::io::stdout();
+            let report = render(&examined.findings, &examined.file, &examined.text, out.is_terminal());
+            // A reader that has gone away (`| head`) is no failure of the check.
+            let _ = out.write_all(report.as_bytes());
+            if examined.is_sound() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+        }
         Err(message) => {
             eprintln!("realnoid check: {message}");
             ExitCode::FAILURE
         }
     }
-}
-
-/// The same for a text; `file` is its name in the report.
-pub fn check(text: &str, file: &str) -> ExitCode {
-    let findings = description::read(text, file).findings;
-    let mut out = std::io::stdout();
-    let report = description::render(&findings, file, text, out.is_terminal());
-    // A reader that has gone away (`| head`) is no failure of the check.
-    let _ = out.write_all(report.as_bytes());
-    if findings.iter().any(|f| f.severity == Severity::Error) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
 /// The text of a URDF file; the error says which file and what to do.
