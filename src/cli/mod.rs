@@ -1,3 +1,4 @@
 //! The command line, thin.
 
 pub mod load;
+pub mod run;
