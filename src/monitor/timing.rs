@@ -4,7 +4,7 @@ use hdrhistogram::Histogram;
 use std::fmt::Write as _;
 
 /// Shortest and longest duration that a histogram tells apart, ns; what is outside is counted at the edge.
-const RANGE_NS: (u64, u64) = (100, 100_000_000_000);
+const RANGE_NS: (u64, u64) = (1, 100_000_000_000);
 /// Two significant digits: percentiles are right to 1 %.
 const SIGNIFICANT_DIGITS: u8 = 2;
 

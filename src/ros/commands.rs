@@ -1,7 +1,6 @@
 //! Command messages → axis commands. All or nothing: a refused message changes nothing.
 
 use super::messages::JointState;
-use crate::model::{Axis, Model};
 use crate::world::{AxisCommand, Mode};
 use std::collections::HashMap;
 
@@ -72,18 +71,26 @@ pub struct Refusal {
 
 /// What commands are checked against.
 #[derive(Clone, Debug)]
-pub struct Rules<'a> {
-    model: &'a Model,
-    by_name: HashMap<&'a str, usize>,
+pub struct Rules {
+    axes: Vec<Axis>,
+    by_name: HashMap<String, usize>,
     /// Parameter `allow_mode_switch`.
     pub allow_mode_switch: bool,
 }
 
-impl<'a> Rules<'a> {
-    /// Rules for the axes of `model`.
-    pub fn new(model: &'a Model, allow_mode_switch: bool) -> Self {
-        let by_name = model.axes.iter().enumerate().map(|(i, a)| (a.name.as_str(), i)).collect();
-        Self { model, by_name, allow_mode_switch }
+#[derive(Clone, Debug)]
+struct Axis {
+    name: String,
+    switchable: bool,
+}
+
+impl Rules {
+    /// Rules for axes given as (name, may its mode be switched?), in the order of `Model::axes`.
+    pub fn new<'a>(axes: impl IntoIterator<Item = (&'a str, bool)>, allow_mode_switch: bool) -> Self {
+        let axes: Vec<_> =
+            axes.into_iter().map(|(name, switchable)| Axis { name: name.into(), switchable }).collect();
+        let by_name = axes.iter().enumerate().map(|(i, a)| (a.name.clone(), i)).collect();
+        Self { axes, by_name, allow_mode_switch }
     }
 }
 
@@ -104,7 +111,7 @@ fn every_axis(
     rules: &Rules,
     make: fn(f64) -> AxisCommand,
 ) -> Result<Vec<AxisCommand>, Refusal> {
-    let axes = &rules.model.axes;
+    let axes = &rules.axes;
     if values.len() != axes.len() {
         let reason = format!("{} values for {} axes (their order is parameter 'axes')", values.len(), axes.len());
         return refuse(RefusalKind::WrongSize, reason);
@@ -130,7 +137,7 @@ fn named_axes(commands: &[AxisCommand], message: &JointState, rules: &Rules) -> 
         if std::mem::replace(&mut named[index], true) {
             return refuse(RefusalKind::DuplicateName, format!("axis '{name}' is named twice"));
         }
-        let axis = &rules.model.axes[index];
+        let axis = &rules.axes[index];
         let command = one_axis(axis, &merged[index], message, i)?;
         may_switch(axis, merged[index].mode, command.mode, rules)?;
         merged[index] = command;
@@ -217,4 +224,129 @@ fn mode_name(mode: Mode) -> &'static str {
 
 fn refuse<T>(kind: RefusalKind, reason: String) -> Result<T, Refusal> {
     Err(Refusal { kind, reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AXES: [(&str, bool); 3] = [("hip", true), ("knee", true), ("fixed_mode", false)];
+
+    fn start() -> Vec<AxisCommand> {
+        vec![AxisCommand::servo(0.1), AxisCommand::torque(2.0), AxisCommand::IDLE]
+    }
+
+    fn joint(name: &[&str], position: &[f64], velocity: &[f64], effort: &[f64]) -> JointState {
+        JointState {
+            name: name.iter().map(ToString::to_string).collect(),
+            position: position.to_vec(),
+            velocity: velocity.to_vec(),
+            effort: effort.to_vec(),
+            ..JointState::default()
+        }
+    }
+
+    /// Bits, because NaN means "not given" and must compare equal.
+    fn bits(commands: &[AxisCommand]) -> Vec<(Mode, [u64; 3])> {
+        commands.iter().map(|c| (c.mode, [c.torque, c.speed, c.target].map(f64::to_bits))).collect()
+    }
+
+    fn accepted(message: Command) -> Vec<AxisCommand> {
+        let mut commands = start();
+        apply(&mut commands, message, &Rules::new(AXES, true)).unwrap();
+        commands
+    }
+
+    /// The kind and the reason of the refusal; the commands must be untouched.
+    fn refused_by(rules: &Rules, message: Command) -> (RefusalKind, String) {
+        let mut commands = start();
+        let refusal = apply(&mut commands, message, rules).unwrap_err();
+        assert_eq!(bits(&commands), bits(&start()), "a refused message changed something");
+        (refusal.kind, refusal.reason)
+    }
+
+    fn refused(message: Command) -> (RefusalKind, String) {
+        refused_by(&Rules::new(AXES, true), message)
+    }
+
+    #[test]
+    fn arrays_command_every_axis() {
+        let rules = Rules::new([("a", true), ("b", true)], true);
+        let mut commands = vec![AxisCommand::IDLE; 2];
+        apply(&mut commands, Command::Effort(&[1.0, -2.0]), &rules).unwrap();
+        assert_eq!(bits(&commands), bits(&[AxisCommand::torque(1.0), AxisCommand::torque(-2.0)]));
+        apply(&mut commands, Command::Servo(&[0.5, 0.0]), &rules).unwrap();
+        assert_eq!(bits(&commands), bits(&[AxisCommand::servo(0.5), AxisCommand::servo(0.0)]));
+    }
+
+    #[test]
+    fn names_command_a_subset_in_any_order() {
+        let c = accepted(Command::Joint(&joint(&["knee", "hip"], &[], &[], &[3.0, -4.0])));
+        assert_eq!(bits(&c), bits(&[AxisCommand::torque(-4.0), AxisCommand::torque(3.0), AxisCommand::IDLE]));
+    }
+
+    #[test]
+    fn a_position_makes_a_servo_with_bounds() {
+        let c = accepted(Command::Joint(&joint(&["knee"], &[0.3], &[-1.5], &[7.0])));
+        assert_eq!(c[1], AxisCommand { mode: Mode::Servo, torque: 7.0, speed: -1.5, target: 0.3 });
+    }
+
+    #[test]
+    fn velocity_alone_changes_only_the_applied_speed() {
+        let c = accepted(Command::Joint(&joint(&["hip", "knee"], &[], &[0.7, 0.8], &[])));
+        assert_eq!((c[0].mode, c[0].target, c[0].speed), (Mode::Servo, 0.1, 0.7));
+        assert_eq!((c[1].mode, c[1].torque, c[1].speed), (Mode::Torque, 2.0, 0.8));
+    }
+
+    #[test]
+    fn sizes_must_fit() {
+        let (kind, reason) = refused(Command::Effort(&[1.0]));
+        assert_eq!((kind, reason.as_str()), (RefusalKind::WrongSize, "1 values for 3 axes (their order is parameter 'axes')"));
+        assert_eq!(refused(Command::Joint(&joint(&["hip"], &[0.0, 1.0], &[], &[]))).0, RefusalKind::WrongSize);
+        assert_eq!(refused(Command::Joint(&joint(&["hip"], &[], &[], &[]))).0, RefusalKind::Empty);
+        assert_eq!(refused(Command::Joint(&joint(&[], &[], &[], &[]))).0, RefusalKind::Empty);
+    }
+
+    #[test]
+    fn values_must_be_finite() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            assert_eq!(refused(Command::Servo(&[0.0, bad, 0.0])).0, RefusalKind::NotFinite);
+            assert_eq!(refused(Command::Joint(&joint(&["hip", "knee"], &[], &[], &[1.0, bad]))).0, RefusalKind::NotFinite);
+        }
+    }
+
+    #[test]
+    fn names_must_be_known_and_single() {
+        let (kind, reason) = refused(Command::Joint(&joint(&["hip", "elbow"], &[0.0, 0.0], &[], &[])));
+        assert_eq!(kind, RefusalKind::UnknownName);
+        assert!(reason.contains("'elbow'"), "{reason}");
+        assert_eq!(refused(Command::Joint(&joint(&["hip", "hip"], &[0.0, 0.0], &[], &[]))).0, RefusalKind::DuplicateName);
+    }
+
+    #[test]
+    fn a_mode_is_switched_only_where_that_is_allowed() {
+        let (kind, reason) = refused(Command::Effort(&[0.0; 3]));
+        assert_eq!(kind, RefusalKind::ModeSwitch);
+        assert_eq!(reason, "axis 'fixed_mode' is in idle mode and its <drive> tag forbids torque mode");
+        let strict = Rules::new(AXES, false);
+        let (kind, reason) = refused_by(&strict, Command::Joint(&joint(&["hip"], &[], &[], &[1.0])));
+        assert_eq!(kind, RefusalKind::ModeSwitch);
+        assert!(reason.contains("allow_mode_switch"), "{reason}");
+        let mut commands = start();
+        apply(&mut commands, Command::Joint(&joint(&["hip"], &[0.2], &[], &[])), &strict).unwrap();
+        assert_eq!(commands[0].target, 0.2);
+    }
+
+    #[test]
+    fn torque_against_speed_has_no_meaning() {
+        for (velocity, effort) in [(-1.0, 2.0), (1.0, -2.0), (0.0, 2.0)] {
+            let message = joint(&["knee"], &[], &[velocity], &[effort]);
+            assert_eq!(refused(Command::Joint(&message)).0, RefusalKind::OppositeSigns, "{velocity} {effort}");
+        }
+        // The knee is driven with 2 N·m already.
+        assert_eq!(refused(Command::Joint(&joint(&["knee"], &[], &[-1.0], &[]))).0, RefusalKind::OppositeSigns);
+        accepted(Command::Joint(&joint(&["knee"], &[], &[0.0], &[0.0])));
+        accepted(Command::Joint(&joint(&["knee"], &[], &[-1.0], &[-2.0])));
+        accepted(Command::Joint(&joint(&["knee"], &[0.0], &[-1.0], &[2.0])));
+    }
 }

@@ -171,3 +171,73 @@ impl CommandEnd {
         self.pace.write(pace);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::Description;
+    use crate::model::{Base, Model};
+
+    fn world() -> World {
+        let nothing = Description {
+            name: "nothing".into(),
+            file: "".into(),
+            text: "".into(),
+            links: vec![],
+            joints: vec![],
+            groups: vec![],
+            chains: vec![],
+        };
+        World::new(Arc::new(Model::build(&nothing, Base::Fixed)), Settings::default()).unwrap()
+    }
+
+    fn ends(world: &World) -> (ControlEnd, PublishEnd, CommandEnd) {
+        let pace = Pace { settings: Settings::default(), real_time_factor: 1.0, max_catch_up: 100 };
+        exchange(world, &vec![], &pace, Arc::default()).unwrap()
+    }
+
+    #[test]
+    fn a_full_ring_drops_the_oldest_and_counts() {
+        let mut world = world();
+        let (control, publish, _) = ends(&world);
+        let extra = 5;
+        for _ in 0..RING_CAPACITY + extra {
+            world.advance();
+            control.emit(&world);
+        }
+        assert!(!control.has_room());
+        let mut seen = vec![];
+        while publish.next(|s| seen.push(s.snapshot.interval)) {}
+        assert_eq!(publish.dropped(), extra as u64);
+        assert!(seen.iter().copied().eq(extra as u64 + 1..=(RING_CAPACITY + extra) as u64), "{seen:?}");
+        assert!(control.has_room());
+    }
+
+    #[test]
+    fn the_latest_pace_wins() {
+        let world = world();
+        let (mut control, _, mut command) = ends(&world);
+        let pace = *control.pace.output_buffer();
+        command.set_pace(Pace { max_catch_up: 1, ..pace });
+        command.set_pace(Pace { max_catch_up: 2, ..pace });
+        assert!(control.pace.update());
+        assert_eq!(control.pace.output_buffer().max_catch_up, 2);
+        assert!(!control.pace.update());
+    }
+
+    #[test]
+    fn timing_is_kept_while_nobody_reads_it() {
+        let world = world();
+        let (control, publish, _) = ends(&world);
+        let mut timing = Box::new(Timing::new().unwrap());
+        for _ in 0..10 {
+            timing.record(1, 1, 1000);
+            control.hand_over(&mut timing);
+        }
+        let mut intervals = 0;
+        publish.timings(|t| intervals += t.intervals);
+        control.hand_over(&mut timing);
+        publish.timings(|t| intervals += t.intervals);
+        assert_eq!(intervals, 10);
+    }
+}

@@ -77,7 +77,7 @@ pub struct Listener {
 }
 
 struct Inbox<'a> {
-    rules: RefCell<Rules<'a>>,
+    rules: RefCell<Rules>,
     commands: RefCell<Vec<AxisCommand>>,
     end: RefCell<CommandEnd>,
     live: &'a Live,
@@ -87,8 +87,9 @@ struct Inbox<'a> {
 impl Listener {
     /// Serves until `stop` is sent or dropped.
     pub fn run(self, stop: futures::channel::oneshot::Receiver<()>) {
+        let axes = self.model.axes.iter().map(|a| (a.name.as_str(), a.switchable));
         let inbox = Inbox {
-            rules: RefCell::new(Rules::new(&self.model, self.values.allow_mode_switch())),
+            rules: RefCell::new(Rules::new(axes, self.values.allow_mode_switch())),
             commands: RefCell::new(self.commands),
             end: RefCell::new(self.end),
             live: &self.live,

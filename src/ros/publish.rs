@@ -6,7 +6,7 @@ use super::messages::{
     Clock, Header, JointState, Shared, StringMessage, TFMessage, Time, Twist as TwistMessage, TwistStamped,
 };
 use super::names::topic_tokens;
-use super::tf;
+use super::tf::{Frames, WORLD};
 use super::topics::{Topics, latched_qos, stream_qos};
 use crate::description::MonitorFrame;
 use crate::model::Model;
@@ -20,6 +20,7 @@ type SharedNames = Shared<Vec<String>>;
 /// The publishers of the simulated state.
 pub struct Outlet {
     model: Arc<Model>,
+    frames: Frames,
     clock: Publisher<Clock>,
     joint_states: Publisher<JointState<SharedNames>>,
     axis_names: SharedNames,
@@ -46,6 +47,7 @@ impl Outlet {
         let latched = latched_qos();
         Ok(Self {
             model: model.clone(),
+            frames: Frames::new(model),
             joint_states: topics.publisher("joint_states", "sensor_msgs/JointState", &stream)?,
             axis_names: Shared::new(model.axes.iter().map(|a| a.name.clone()).collect()),
             twists: monitored(topics, model, log)?,
@@ -62,7 +64,7 @@ impl Outlet {
     pub fn latch(&mut self, urdf: &str, initial: &Snapshot) {
         let text = StringMessage { data: urdf.into() };
         self.refused_by_dds += send(&self.robot_description, text);
-        self.refused_by_dds += send(&self.tf_static, tf::frames(&self.model, initial, true));
+        self.refused_by_dds += send(&self.tf_static, self.frames.fixed(initial));
     }
 
     /// Publishes one state; /tf not more often than `tf_rate` (Hz, simulated time; 0: never).
@@ -75,7 +77,7 @@ impl Outlet {
             refused += send(&m.publisher, self.twist(m, snapshot, stamp));
         }
         if tf_rate > 0.0 && snapshot.stamp_ns >= self.next_tf_ns {
-            refused += send(&self.tf, tf::frames(&self.model, snapshot, false));
+            refused += send(&self.tf, self.frames.moving(snapshot));
             self.next_tf_ns = next_on_grid(snapshot.stamp_ns, 1e9 / tf_rate);
         }
         self.refused_by_dds += refused;
@@ -97,7 +99,7 @@ impl Outlet {
             MonitorFrame::Body => (self.model.links[m.link].name.clone(), v_l.linear, v_l.angular),
             MonitorFrame::World => {
                 let r_wl = snapshot.link_pose[m.link].rotation;
-                (tf::WORLD.to_string(), r_wl * v_l.linear, r_wl * v_l.angular)
+                (WORLD.to_string(), r_wl * v_l.linear, r_wl * v_l.angular)
             }
         };
         let twist = TwistMessage { linear: linear.into(), angular: angular.into() };
