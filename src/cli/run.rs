@@ -62,7 +62,7 @@ fn stand_in(base: crate::model::Base) -> Result<Loaded, String> {
     let link = |name: &str, parent, fixed, monitor| LinkInfo { name: name.into(), parent, fixed, monitor };
     let model = Model {
         name: "stand_in".into(),
-        axes: vec![axis("hip", true), axis("knee", true), axis("ankle", false)],
+        axes: vec![axis("hip", true), axis("knee", true), Axis { mode: DriveMode::Torque, ..axis("ankle", false) }],
         links: vec![
             link("base", None, false, None),
             link("thigh", Some(0), false, Some(MonitorFrame::Body)),
