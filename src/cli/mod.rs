@@ -1,4 +1,5 @@
 //! The command line, thin.
 
+pub mod check;
 pub mod load;
 pub mod run;

@@ -99,6 +99,7 @@ pub struct PlacedShape {
 
 /// Shapes; lengths in metres. Axes of round shapes are Z, as in URDF.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the sentence at each variant tells its fields")]
 pub enum Geometry {
     /// Full edge lengths.
     Box { size: [f64; 3] },
@@ -121,7 +122,7 @@ pub enum Geometry {
     /// A file, scaled per axis.
     Mesh { filename: String, scale: [f64; 3] },
     /// A shape whose tag is read and checked, and whose effect comes with a later issue: its element name and
-    /// its numeric attributes in order.
+    /// its numeric attributes in order; the components of a vector `size` are `size.0`, `size.1` ….
     Other { kind: String, values: Vec<(String, f64)> },
 }
 
@@ -130,8 +131,11 @@ pub enum Geometry {
 pub enum Dimension {
     /// Filled.
     Solid,
-    /// A shell; wall thickness in metres.
-    Hollow { thickness: f64 },
+    /// A shell.
+    Hollow {
+        /// Of the wall, metres.
+        thickness: f64,
+    },
 }
 
 /// `<body specific_gravity dimension thickness>`.
@@ -145,23 +149,25 @@ pub struct Body {
     pub dimension: Dimension,
     /// Factor on the distance used in the moment of inertia (B-18); 1 by default.
     pub l_scale: f64,
+    /// `<shape>` children: what the mass is computed from; empty = the link's visuals.
+    pub shapes: Vec<PlacedShape>,
 }
 
-/// `<surface>` (B-8).
+/// `<surface>` (B-8); `None` = not given, the scene's default holds.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// Where.
     pub at: Position,
     /// ≥ 0.
-    pub friction: f64,
+    pub friction: Option<f64>,
     /// ≥ 0, metres.
-    pub rolling_friction: f64,
+    pub rolling_friction: Option<f64>,
     /// ≥ 0, metres.
-    pub spinning_friction: f64,
+    pub spinning_friction: Option<f64>,
     /// 0…1.
-    pub restitution: f64,
+    pub restitution: Option<f64>,
     /// ≥ 0, metres.
-    pub margin: f64,
+    pub margin: Option<f64>,
 }
 
 /// `<damping linear angular>`: v ← v·(1−d)^dt (B-8 I, J).
@@ -256,9 +262,9 @@ pub struct Joint {
 pub struct Limit {
     /// Where.
     pub at: Position,
-    /// rad or m.
+    /// rad or m; −∞ for a continuous joint, and where URDF 1.2 leaves it out.
     pub lower: f64,
-    /// rad or m.
+    /// rad or m; +∞ for a continuous joint, and where URDF 1.2 leaves it out.
     pub upper: f64,
     /// N·m or N; `None` where the text gives none or the placeholder 0.
     pub effort: Option<f64>,

@@ -1,1 +1,8 @@
-//! TODO room.
+//! Engines behind one seam. `rbx` is ours; others join it here.
+
+mod rbx;
+
+pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};
+
+/// Names for `--engine` and the parameter `engine`.
+pub const ENGINE_NAMES: [&str; 1] = ["rbx"];

@@ -1,5 +1,13 @@
 //! Aliases over nalgebra's f64 types, frames, and the kernel's own small types.
 
+mod real;
+mod sincos;
+mod small;
+
+pub use real::{Fma, Real};
+pub use sincos::sin_cos;
+pub use small::{M3, S3, V3};
+
 /// 3-vector.
 pub type Vec3 = nalgebra::Vector3<f64>;
 /// 3×3 matrix.

@@ -1,16 +1,18 @@
 //! Description + mass properties → [`Model`]: immutable, arrays, parent before child.
+//!
+//! invariant: `bodies[0]` is the world; for every other body `parent < index`, so a loop upwards visits parents first.
+//! invariant: every body's joint frame has its (last) axis along z; the frame of a body is its joint frame.
 
-use crate::description::{Description, DriveMode, MonitorFrame};
+mod build;
+mod effects;
+mod group;
 
-/// How the root link is held.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Base {
-    /// On a test stand.
-    #[default]
-    Fixed,
-    /// Six free degrees of freedom.
-    Free,
-}
+pub use build::Base;
+pub use effects::{EFFECT_NAMES, Effects};
+pub use group::{EulerFrame, EulerRates, POLE, rotation};
+
+use crate::description::{DriveMode, MonitorFrame};
+use crate::math::{M3, Pose, S3, V3};
 
 /// Rotary or linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,21 +23,48 @@ pub enum AxisKind {
     Linear,
 }
 
-/// One driven axis: a revolute, continuous or prismatic joint of the URDF, also when it is part of a group.
+/// Where the coordinates of an axis are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisSlot {
+    /// One coordinate of its own: `q[q]`, `v[v]`.
+    Scalar {
+        /// Index into q.
+        q: usize,
+        /// Index into v.
+        v: usize,
+    },
+    /// Angle `angle` (0 = H, 1 = P, 2 = B) of the 3DOF group `group`.
+    Euler {
+        /// Index into [`Model::eulers`].
+        group: usize,
+        /// 0 = H, 1 = P, 2 = B.
+        angle: usize,
+    },
+}
+
+/// One axis: a revolute, continuous or prismatic joint of the URDF, also when it is part of a group.
 #[derive(Clone, Debug)]
 pub struct Axis {
     /// Joint name in the URDF.
     pub name: String,
     /// Rotary or linear.
     pub kind: AxisKind,
+    /// Coordinates.
+    pub slot: AxisSlot,
     /// rad or m; −∞ where unlimited.
     pub lower: f64,
     /// rad or m; +∞ where unlimited.
     pub upper: f64,
-    /// N·m or N; +∞ where nothing bounds it.
+    /// Bound of the drive, N·m or N; +∞ where nothing bounds it.
     pub max_torque: f64,
-    /// rad/s or m/s; +∞ where nothing bounds it.
+    /// No-load speed at maximum voltage (J-13 b), rad/s or m/s; +∞ where no drive tag gives it.
     pub no_load_speed: f64,
+    /// Bound of a servo's speed: the no-load speed, else the URDF's velocity limit, else +∞.
+    pub max_speed: f64,
+    /// Viscous damping, N·m·s/rad or N·s/m.
+    pub damping: f64,
+    /// Coulomb friction, N·m or N.
+    pub friction: f64,
     /// Mode at start.
     pub mode: DriveMode,
     /// May a command switch the mode?
@@ -53,6 +82,92 @@ pub struct LinkInfo {
     pub fixed: bool,
     /// Monitor tag.
     pub monitor: Option<MonitorFrame>,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Where the frame is.
+    pub frame: LinkFrame,
+}
+
+/// How a link's frame follows from the state.
+#[derive(Clone, Copy, Debug)]
+pub enum LinkFrame {
+    /// Rigidly on a body.
+    OnBody {
+        /// Index into [`Model::bodies`].
+        body: usize,
+        /// `X_BL`: link frame in the body frame.
+        offset: Pose,
+    },
+    /// A massless link inside a group: after the first `turns` of the turns that make up the joint of `body`.
+    InGroup {
+        /// The group's body.
+        body: usize,
+        /// 1 or 2.
+        turns: usize,
+        /// Link frame in the joint frame after those turns.
+        offset: Pose,
+    },
+}
+
+/// Kinds of joints of the kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointType {
+    /// Rotation about z. q: angle.
+    Revolute,
+    /// Translation along z. q: distance.
+    Prismatic,
+    /// Rotation about x, then about the new z. q: two angles.
+    Universal,
+    /// q: unit quaternion (w, x, y, z), child → joint frame; v: angular velocity in the child frame.
+    Spherical,
+    /// q: position in the joint frame, then as spherical; v: twist in the child frame, angular first.
+    Floating,
+}
+
+impl JointType {
+    /// Coordinates.
+    pub fn nq(self) -> usize {
+        match self {
+            Self::Revolute | Self::Prismatic => 1,
+            Self::Universal => 2,
+            Self::Spherical => 4,
+            Self::Floating => 7,
+        }
+    }
+    /// Velocities.
+    pub fn nv(self) -> usize {
+        match self {
+            Self::Revolute | Self::Prismatic => 1,
+            Self::Universal => 2,
+            Self::Spherical => 3,
+            Self::Floating => 6,
+        }
+    }
+}
+
+/// A rigid body with the joint that carries it.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Index of the parent body.
+    pub parent: usize,
+    /// Joint to the parent.
+    pub joint: JointType,
+    /// First coordinate.
+    pub q: usize,
+    /// First velocity.
+    pub v: usize,
+    /// Index among the spherical joints, if this is one.
+    pub ball: usize,
+    /// Joint frame's axes in the parent body's frame.
+    pub tree_r: M3<f64>,
+    /// Joint frame's origin in the parent body's frame, m.
+    pub tree_p: V3<f64>,
+    /// kg.
+    pub mass: f64,
+    /// Mass × centre of mass in the body frame, kg·m.
+    pub mc: V3<f64>,
+    /// Inertia about the body frame's origin, kg·m².
+    pub inertia: S3<f64>,
 }
 
 /// The immutable model.
@@ -64,14 +179,43 @@ pub struct Model {
     pub axes: Vec<Axis>,
     /// Links in the order of the URDF.
     pub links: Vec<LinkInfo>,
+    /// Bodies; the first is the world.
+    pub bodies: Vec<Body>,
+    /// 3DOF groups.
+    pub eulers: Vec<EulerFrame>,
     /// How the root is held.
     pub base: Base,
+    /// Index of the root link.
+    pub root_link: usize,
+    /// Coordinates.
+    pub nq: usize,
+    /// Velocities.
+    pub nv: usize,
+    /// Number of spherical joints.
+    pub balls: usize,
+    /// What the scene calls for.
+    pub effects: Effects,
 }
 
 impl Model {
-    /// Stub.
-    pub fn build(d: &Description, base: Base) -> Model {
-        let _ = d;
-        Model { name: d.name.clone(), axes: vec![], links: vec![], base }
+    /// Total mass of all links, kg.
+    pub fn mass(&self) -> f64 {
+        self.links.iter().map(|l| l.mass).sum()
+    }
+    /// Index of an axis by its URDF joint name.
+    pub fn axis(&self, name: &str) -> Option<usize> {
+        self.axes.iter().position(|a| a.name == name)
+    }
+    /// The coordinates at which every angle is 0 and every quaternion 1.
+    pub fn neutral(&self) -> Vec<f64> {
+        let mut q = vec![0.0; self.nq];
+        for b in &self.bodies[1..] {
+            match b.joint {
+                JointType::Spherical => q[b.q] = 1.0,
+                JointType::Floating => q[b.q + 3] = 1.0,
+                _ => {}
+            }
+        }
+        q
     }
 }

@@ -1,13 +1,15 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
-mod command;
 mod settings;
 mod snapshot;
 
+use crate::dynamics::{Energy, Kinematics, Momentum, energy, kinematics, link_pose, link_twist, momentum};
+use crate::engine::{Rbx, State, StepSettings};
+use crate::math::{Pose, Twist};
 use crate::model::Model;
 use std::sync::Arc;
 
-pub use command::{AxisCommand, Mode};
+pub use crate::solver::{AxisCommand, Mode};
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
 
@@ -22,87 +24,221 @@ pub struct Stats {
     pub unsettled_steps: u64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
     pub pole_steps: u64,
+    /// Steps whose result was not finite and was not taken. The world stands still from the first one on.
+    pub diverged_steps: u64,
 }
 
-/// One simulated world.
+/// One simulated world. A clone made between intervals goes on with the same bits.
+#[derive(Clone, Debug)]
 pub struct World {
     model: Arc<Model>,
     settings: Settings,
+    engine: Rbx,
+    initial: State,
     commands: Vec<AxisCommand>,
-    position: Vec<f64>,
-    velocity: Vec<f64>,
+    kinematics: Kinematics,
     interval: u64,
     stamp_ns: i64,
+    /// Part of a nanosecond that the time scale has left over.
+    rest_ns: f64,
+    stats: Stats,
 }
 
 impl World {
-    /// A world at its initial state, time 0. `Err` says which setting is out of range.
+    /// A world at its initial state, time 0, every axis in its mode at start.
+    ///
+    /// # Errors
+    /// Says which setting is out of range.
     pub fn new(model: Arc<Model>, settings: Settings) -> Result<Self, String> {
-        let n = model.axes.len();
-        Ok(Self {
-            commands: vec![AxisCommand::IDLE; n],
-            position: vec![0.0; n],
-            velocity: vec![0.0; n],
+        settings.check()?;
+        let mut engine = Rbx::new(&model);
+        engine.prepare(&model, settings.integrator);
+        let mut world = Self {
+            initial: engine.state.clone(),
+            engine,
+            commands: vec![AxisCommand::IDLE; model.axes.len()],
+            kinematics: Kinematics::new(&model),
             model,
             settings,
             interval: 0,
             stamp_ns: 0,
-        })
+            rest_ns: 0.0,
+            stats: Stats::default(),
+        };
+        world.reset();
+        Ok(world)
     }
+
     /// The model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
+
     /// The settings in force.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
-    /// Takes effect with the next step. `Err` says which setting is out of range; nothing changes then.
+
+    /// Takes effect with the next step. Allocates only if the integrator changes.
+    ///
+    /// # Errors
+    /// Says which setting is out of range; nothing changes then.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), String> {
+        settings.check()?;
+        if settings.integrator != self.settings.integrator {
+            self.engine.prepare(&self.model, settings.integrator);
+        }
         self.settings = settings;
         Ok(())
     }
-    /// Sets the drive inputs of all axes (in the order of `Model::axes`); allocates nothing.
-    pub fn set_commands(&mut self, commands: &[AxisCommand]) {
-        self.commands.copy_from_slice(commands);
-    }
-    /// Advances one control interval; allocates nothing, cannot panic.
-    pub fn advance(&mut self) {
-        let h = self.settings.control_interval_ns as f64 * 1e-9;
-        for i in 0..self.position.len() {
-            if self.commands[i].mode == Mode::Torque {
-                self.velocity[i] += h * self.commands[i].torque;
-            }
-            self.position[i] += h * self.velocity[i];
+
+    /// Sets the drive inputs of all axes, in the order of `Model::axes`; allocates nothing.
+    ///
+    /// # Errors
+    /// The index of the first axis whose command is not a number, or whose count does not fit; nothing changes then.
+    pub fn set_commands(&mut self, commands: &[AxisCommand]) -> Result<(), usize> {
+        if commands.len() != self.commands.len() {
+            return Err(commands.len());
         }
+        if let Some(bad) = commands.iter().position(|c| !c.is_sound()) {
+            return Err(bad);
+        }
+        self.commands.copy_from_slice(commands);
+        Ok(())
+    }
+
+    /// The drive inputs in force.
+    pub fn commands(&self) -> &[AxisCommand] {
+        &self.commands
+    }
+
+    /// The state.
+    pub fn state(&self) -> &State {
+        &self.engine.state
+    }
+
+    /// Puts the world into a state, which also becomes the one that [`World::reset`] goes back to.
+    pub fn set_initial_state(&mut self, state: State) {
+        self.initial = state;
+        self.reset();
+    }
+
+    /// Advances one control interval; allocates nothing, cannot panic. A world that has diverged stands still.
+    pub fn advance(&mut self) {
+        let scaled = self.settings.control_interval_ns as f64 * self.settings.time_scale + self.rest_ns;
+        let whole = scaled.floor();
+        self.rest_ns = scaled - whole;
+        self.stamp_ns += whole as i64;
         self.interval += 1;
-        self.stamp_ns += self.settings.control_interval_ns;
+        if self.settings.time_scale == 0.0 {
+            return;
+        }
+        let step = self.step_settings();
+        for _ in 0..self.settings.steps_per_interval {
+            if self.stats.diverged_steps > 0 {
+                break;
+            }
+            self.step(&step);
+        }
+        self.update();
     }
-    /// Back to the initial state and time 0; commands become idle or each axis' mode at start.
+
+    fn step_settings(&self) -> StepSettings {
+        let s = &self.settings;
+        let interval = s.control_interval_ns as f64 * 1e-9 * s.time_scale;
+        StepSettings {
+            h: interval / f64::from(s.steps_per_interval),
+            gravity: self.gravity(),
+            passes: s.solver_iterations,
+            integrator: s.integrator,
+        }
+    }
+
+    fn step(&mut self, settings: &StepSettings) {
+        let report = self.engine.step(&self.model, &self.commands, settings);
+        let s = &mut self.stats;
+        s.steps += 1;
+        s.fallback_steps += u64::from(report.fell_back);
+        s.unsettled_steps += u64::from(report.unsettled);
+        s.pole_steps += u64::from(report.at_pole);
+        s.diverged_steps += u64::from(report.diverged);
+    }
+
+    /// Gravity in force: zero if the effect is off.
+    fn gravity(&self) -> [f64; 3] {
+        if self.model.effects.gravity { self.settings.gravity } else { [0.0; 3] }
+    }
+
+    /// Back to the initial state and time 0; every axis in its mode at start.
     pub fn reset(&mut self) {
-        self.position.fill(0.0);
-        self.velocity.fill(0.0);
+        self.engine.state.clone_from(&self.initial);
+        self.engine.axes.reset();
+        for (i, axis) in self.model.axes.iter().enumerate() {
+            self.commands[i] = match axis.mode {
+                Mode::Idle => AxisCommand::IDLE,
+                Mode::Torque => AxisCommand::torque(0.0),
+                Mode::Servo => AxisCommand::servo(self.initial.axis(&self.model, i).0),
+            };
+        }
+        (self.interval, self.stamp_ns, self.rest_ns) = (0, 0, 0.0);
+        self.stats = Stats::default();
+        self.update();
     }
+
+    fn update(&mut self) {
+        kinematics(&self.model, &mut self.kinematics, &self.engine.state.q, &self.engine.state.v);
+    }
+
     /// A snapshot with all buffers at their size.
     pub fn new_snapshot(&self) -> Snapshot {
-        let mut s = Snapshot::default();
-        s.position.resize(self.position.len(), 0.0);
-        s.velocity.resize(self.position.len(), 0.0);
-        s.effort.resize(self.position.len(), 0.0);
-        s.link_pose.resize(self.model.links.len(), crate::math::Pose::identity());
-        s.link_twist.resize(self.model.links.len(), crate::math::Twist::default());
+        let (axes, links) = (self.model.axes.len(), self.model.links.len());
+        let mut s = Snapshot {
+            position: vec![0.0; axes],
+            velocity: vec![0.0; axes],
+            effort: vec![0.0; axes],
+            link_pose: vec![Pose::identity(); links],
+            link_twist: vec![Twist::default(); links],
+            ..Snapshot::default()
+        };
+        self.write_snapshot(&mut s);
         s
     }
+
     /// Writes the present state; allocates nothing.
     pub fn write_snapshot(&self, s: &mut Snapshot) {
-        s.interval = self.interval;
-        s.stamp_ns = self.stamp_ns;
-        s.position.copy_from_slice(&self.position);
-        s.velocity.copy_from_slice(&self.velocity);
-        s.finite = true;
+        let (m, state) = (&self.model, &self.engine.state);
+        (s.interval, s.stamp_ns) = (self.interval, self.stamp_ns);
+        for i in 0..m.axes.len() {
+            (s.position[i], s.velocity[i]) = state.axis(m, i);
+        }
+        s.effort.copy_from_slice(&self.engine.axes.effort);
+        for link in 0..m.links.len() {
+            s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
+            s.link_twist[link] = link_twist(m, &self.kinematics, (&state.q, &state.v), &state.angles, link);
+        }
+        let e = self.energy();
+        (s.kinetic_energy, s.potential_energy) = (e.kinetic, e.potential);
+        s.stats = self.stats;
+        s.finite = self.stats.diverged_steps == 0;
     }
+
+    /// Simulated time, s.
+    pub fn time(&self) -> f64 {
+        self.stamp_ns as f64 * 1e-9
+    }
+
+    /// Kinetic and potential energy, J.
+    pub fn energy(&self) -> Energy {
+        energy(&self.model, &self.kinematics, self.gravity())
+    }
+
+    /// Momentum in the world frame, about the common centre of mass.
+    pub fn momentum(&self) -> Momentum {
+        momentum(&self.model, &self.kinematics)
+    }
+
     /// Counters.
     pub fn stats(&self) -> Stats {
-        Stats::default()
+        self.stats
     }
 }

@@ -1,23 +1,15 @@
 //! Settings of a world (W-3 … W-6), with their ranges.
 
-/// How the state is advanced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Integrator {
-    /// First order; damping, servos, stops and friction implicit. The default.
-    #[default]
-    SemiImplicitEuler,
-    /// Classical fourth order; steps in which a stop, dry friction or a servo acts fall back to the default, counted.
-    Rk4,
-}
+pub use crate::engine::Integrator;
 
 /// Settings of a world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Control interval in ns of simulated time before the time scale; 1 µs … 1 s.
+    /// Control interval in ns, before the time scale; 1 µs … 1 s.
     pub control_interval_ns: i64,
     /// W-5: 1 … 1000.
     pub steps_per_interval: u32,
-    /// W-6: 1 … 10000.
+    /// W-6: passes of the axis set at most, 1 … 10000.
     pub solver_iterations: u32,
     /// W-3: 0 … 100; 0 stops time.
     pub time_scale: f64,
@@ -37,5 +29,27 @@ impl Default for Settings {
             gravity: [0.0, 0.0, -9.80665],
             integrator: Integrator::SemiImplicitEuler,
         }
+    }
+}
+
+impl Settings {
+    /// # Errors
+    /// Names the setting that is out of range, its value and the range.
+    pub fn check(&self) -> Result<(), String> {
+        let ranged = |name: &str, value: f64, low: f64, high: f64, unit: &str| {
+            if value >= low && value <= high {
+                Ok(())
+            } else {
+                Err(format!("{name} is {value}{unit}; it must be from {low} to {high}{unit}"))
+            }
+        };
+        ranged("control_interval", self.control_interval_ns as f64 * 1e-9, 1e-6, 1.0, " s")?;
+        ranged("steps_per_interval", f64::from(self.steps_per_interval), 1.0, 1000.0, "")?;
+        ranged("solver_iterations", f64::from(self.solver_iterations), 1.0, 10_000.0, "")?;
+        ranged("time_scale", self.time_scale, 0.0, 100.0, "")?;
+        for (axis, g) in ["x", "y", "z"].iter().zip(self.gravity) {
+            ranged(&format!("gravity {axis}"), g, -1000.0, 1000.0, " m/s²")?;
+        }
+        Ok(())
     }
 }

@@ -23,6 +23,8 @@ pub struct Snapshot {
     pub kinetic_energy: f64,
     /// J, zero with every centre of mass at the world's origin height.
     pub potential_energy: f64,
-    /// False as soon as any state value is not finite.
+    /// Counters.
+    pub stats: super::Stats,
+    /// False once the world has diverged and stands still.
     pub finite: bool,
 }

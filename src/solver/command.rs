@@ -27,4 +27,8 @@ impl AxisCommand {
     pub fn servo(target: f64) -> Self {
         Self { mode: Mode::Servo, target, ..Self::IDLE }
     }
+    /// True if every number that the mode uses is finite, or NaN where that means "not given".
+    pub fn is_sound(&self) -> bool {
+        !self.torque.is_infinite() && !self.speed.is_infinite() && (self.mode != Mode::Servo || self.target.is_finite())
+    }
 }

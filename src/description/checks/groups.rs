@@ -1,0 +1,229 @@
+//! `<joint_group>` and `<chain>`: what they name exists, and the joints of a group form what its type says.
+
+use super::super::element::Element;
+use super::super::finding::Finding;
+use super::super::report::Report;
+use super::super::tags::robot::RobotTags;
+use super::super::{Description, GroupKind, Joint, JointGroup, JointKind, Link, suggest};
+use crate::math::Vec3;
+use nalgebra::Rotation3;
+use std::collections::HashMap;
+
+/// Metres, and cosine of the angle between axes: what rounding in a text may leave.
+const TOLERANCE: f64 = 1e-6;
+
+/// One axis of a group: its letter and its joint.
+type Axis<'d> = (&'static str, &'d Joint);
+
+/// All groups and chains.
+pub(super) fn check(d: &Description, tags: &RobotTags, report: &mut Report) {
+    let mut names: HashMap<&str, u32> = HashMap::new();
+    let mut owners: HashMap<&str, &str> = HashMap::new();
+    for (group, element) in &tags.groups {
+        if let Some(line) = names.insert(&group.name, group.at.line) {
+            let message = format!("a second group named '{}'; the first one is in line {line}", group.name);
+            report.add(Finding::error("duplicate-name", element.place_of("name", report), message, "rename one group"));
+        }
+        check_group(d, group, element, &mut owners, report);
+    }
+    for (chain, element) in &tags.chains {
+        let joints = d.joints.iter().map(|j| j.name.as_str());
+        let roots = joints.chain(d.groups.iter().map(|g| g.name.as_str()));
+        must_exist("joint or joint_group", &chain.root, roots, ("root", element), report);
+        if let Some(anchor) = &chain.anchor {
+            must_exist("link", anchor, d.links.iter().map(|l| l.name.as_str()), ("anchor", element), report);
+        }
+    }
+}
+
+fn must_exist<'n>(
+    what: &str,
+    name: &str,
+    known: impl Iterator<Item = &'n str> + Clone,
+    (attribute, element): (&str, &Element),
+    report: &mut Report,
+) -> bool {
+    let exists = known.clone().any(|k| k == name);
+    if !exists {
+        let message = format!("there is no {what} '{name}'");
+        let mend = match suggest::nearest(name, known) {
+            Some(near) => format!("did you mean '{near}'?"),
+            None => format!("name an existing {what}"),
+        };
+        report.add(Finding::error("unknown-name", element.place_of(attribute, report), message, mend));
+    }
+    exists
+}
+
+fn check_group<'d>(
+    d: &'d Description,
+    group: &'d JointGroup,
+    element: &Element,
+    owners: &mut HashMap<&'d str, &'d str>,
+    report: &mut Report,
+) {
+    let before = report.len();
+    let named = [("h", &group.h), ("p", &group.p), ("b", &group.b), ("e", &group.e)];
+    let mut axes: Vec<Axis<'d>> = vec![];
+    for (letter, name) in named {
+        let Some(name) = name else { continue };
+        let joints = d.joints.iter().map(|j| j.name.as_str());
+        if !must_exist("joint", name, joints, (letter, element), report) {
+            continue;
+        }
+        refuse_second_owner(letter, name, &group.name, element, owners, report);
+        axes.extend(d.joints.iter().find(|j| j.name == *name).map(|joint| (letter, joint)));
+    }
+    refuse_wrong_types(&axes, element, report);
+    require_axes(group, element, report);
+    if report.len() > before {
+        return;
+    }
+    refuse_broken_path(&axes, element, report);
+    if report.len() == before {
+        check_shape(d, group.kind, &axes, element, report);
+    }
+}
+
+fn refuse_second_owner<'d>(
+    letter: &str,
+    joint: &'d str,
+    group: &'d str,
+    element: &Element,
+    owners: &mut HashMap<&'d str, &'d str>,
+    report: &mut Report,
+) {
+    if let Some(owner) = owners.insert(joint, group) {
+        let message = format!("joint '{joint}' is already an axis of the group '{owner}'");
+        let mend = "a joint can be one axis of one group";
+        report.add(Finding::error("joint-in-two-groups", element.place_of(letter, report), message, mend));
+    }
+}
+
+fn refuse_wrong_types(axes: &[Axis], element: &Element, report: &mut Report) {
+    for (letter, joint) in axes {
+        let linear = *letter == "e";
+        let right = match joint.kind {
+            JointKind::Revolute | JointKind::Continuous => !linear,
+            JointKind::Prismatic => linear,
+            _ => false,
+        };
+        if !right {
+            let needed = if linear { "prismatic" } else { "revolute or continuous" };
+            let message = format!("joint '{}' (line {}) cannot be the axis {letter}", joint.name, joint.at.line);
+            let mend = format!("the axis {letter} takes a {needed} joint");
+            report.add(Finding::error("group-axis-type", element.place_of(letter, report), message, mend));
+        }
+    }
+}
+
+fn require_axes(group: &JointGroup, element: &Element, report: &mut Report) {
+    let given = [("h", &group.h), ("p", &group.p), ("b", &group.b)];
+    let needed: &[&str] = match group.kind {
+        GroupKind::ThreeDof => &["h", "p", "b"],
+        GroupKind::Cardan => &["h", "p"],
+        GroupKind::CombinedHinge => &[],
+    };
+    let missing: Vec<_> =
+        given.iter().filter(|(l, name)| needed.contains(l) && name.is_none()).map(|(l, _)| *l).collect();
+    let (message, mend) = if !missing.is_empty() {
+        (
+            format!("this type needs {}; {} is missing", needed.join(", "), missing.join(", ")),
+            "name the joint, or use type=\"combined_hinge\"",
+        )
+    } else if given.iter().all(|(_, name)| name.is_none()) {
+        ("a group needs at least one of h, p, b".to_string(), "name a joint, or take the group out")
+    } else {
+        return;
+    };
+    report.add(Finding::error("group-axis-missing", element.place(report), message, mend));
+}
+
+fn refuse_broken_path(axes: &[Axis], element: &Element, report: &mut Report) {
+    for pair in axes.windows(2) {
+        let [(upper, above), (lower, below)] = pair else { continue };
+        if above.child != below.parent {
+            let message = format!(
+                "{lower} does not follow {upper}: '{}' moves link '{}', but the parent of '{}' is '{}'",
+                above.name, above.child, below.name, below.parent
+            );
+            let mend = format!("make '{}' the parent link of '{}' (line {})", above.child, below.name, below.at.line);
+            report.add(Finding::error("group-path", element.place_of(lower, report), message, mend));
+        }
+    }
+}
+
+/// The rules of the type: which joints share their origin, which links are massless, which axes are perpendicular.
+fn check_shape(d: &Description, kind: GroupKind, axes: &[Axis], element: &Element, report: &mut Report) {
+    let shared = match kind {
+        GroupKind::CombinedHinge => return,
+        GroupKind::Cardan => 2,
+        GroupKind::ThreeDof => 3,
+    };
+    let stack = &axes[..shared.min(axes.len())];
+    for pair in stack.windows(2) {
+        let [(upper, above), (lower, below)] = pair else { continue };
+        refuse_own_origin((upper, lower), below, element, report);
+        if let Some(link) = d.links.iter().find(|link| link.name == above.child) {
+            refuse_massive_between((upper, lower), link, element, report);
+        }
+        for branch in d.joints.iter().filter(|j| j.parent == above.child && j.name != below.name) {
+            let message =
+                format!("joint '{}' (line {}) branches off between {upper} and {lower}", branch.name, branch.at.line);
+            let mend = format!("hang it on '{}' or on '{}'", above.parent, below.child);
+            report.add(Finding::error("group-branch", element.place_of(lower, report), message, mend));
+        }
+    }
+    refuse_skew_axes(stack, element, report);
+}
+
+fn refuse_own_origin((upper, lower): (&str, &str), below: &Joint, element: &Element, report: &mut Report) {
+    let offset = Vec3::from(below.origin.xyz).norm();
+    if offset > TOLERANCE {
+        let [x, y, z] = below.origin.xyz;
+        let message = format!(
+            "{upper} and {lower} must share their origin, but '{}' (line {}) has xyz=\"{x} {y} {z}\", {offset:.6} m away",
+            below.name, below.at.line
+        );
+        let mend = "set the xyz of that <origin> to 0 0 0, or use type=\"combined_hinge\"";
+        report.add(Finding::error("group-origin", element.place_of(lower, report), message, mend));
+    }
+}
+
+fn refuse_massive_between((upper, lower): (&str, &str), link: &Link, element: &Element, report: &mut Report) {
+    let reason = match (&link.inertial, &link.body) {
+        (_, Some(_)) => "a <body>",
+        (Some(_), _) => "an <inertial>",
+        _ => return,
+    };
+    let message = format!(
+        "link '{}' (line {}) between {upper} and {lower} has {reason}: it must be massless",
+        link.name, link.at.line
+    );
+    let mend = format!("take {reason} out of it, or use type=\"combined_hinge\"");
+    report.add(Finding::error("group-mass", element.place_of(lower, report), message, mend));
+}
+
+/// At zero angles every axis of the stack is perpendicular to every other one.
+fn refuse_skew_axes(stack: &[Axis], element: &Element, report: &mut Report) {
+    let mut frame = Rotation3::identity();
+    let mut directions: Vec<(&str, Vec3)> = vec![];
+    for (i, (letter, joint)) in stack.iter().enumerate() {
+        if i > 0 {
+            let [roll, pitch, yaw] = joint.origin.rpy;
+            frame *= Rotation3::from_euler_angles(roll, pitch, yaw);
+        }
+        let direction = frame * Vec3::from(joint.axis);
+        for (other, earlier) in &directions {
+            let cosine = earlier.dot(&direction);
+            if cosine.abs() > TOLERANCE {
+                let angle = cosine.clamp(-1.0, 1.0).acos().to_degrees();
+                let message =
+                    format!("the axes {other} and {letter} are {angle:.4}° apart at zero: they must be perpendicular");
+                let mend = format!("mend the <axis> or the rpy of '{}' (line {})", joint.name, joint.at.line);
+                report.add(Finding::error("group-axes", element.place_of(letter, report), message, mend));
+            }
+        }
+        directions.push((letter, direction));
+    }
+}

@@ -1,0 +1,37 @@
+//! Checks over the whole description, after all items have been read.
+
+mod groups;
+mod inertias;
+mod masses;
+mod names;
+mod ranges;
+mod rigid;
+mod sides;
+mod tree;
+
+use super::Description;
+use super::element::Element;
+use super::finding::Place;
+use super::report::Report;
+use super::tags::robot::RobotTags;
+use super::{Joint, Link};
+
+/// Runs all checks. `all_joints_read` is false if joints are missing from the description because of faults
+/// already reported.
+pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints_read: bool, report: &mut Report) {
+    names::check(d, report);
+    let tree = tree::check(d, robot, all_joints_read, report);
+    inertias::check(d, tree.as_ref(), report);
+    masses::check(d, tree.as_ref(), report);
+    groups::check(d, tags, report);
+    ranges::check(d, report);
+    sides::check(d, report);
+}
+
+fn place_of_link(link: &Link) -> Place {
+    Place { element: format!("link '{}'", link.name), at: link.at }
+}
+
+fn place_of_joint(joint: &Joint) -> Place {
+    Place { element: format!("joint '{}'", joint.name), at: joint.at }
+}

@@ -1,0 +1,52 @@
+//! What is read and checked, but has no effect on the simulation yet. Whoever makes an effect real deletes
+//! its row here (and its mark in `docs/tags.md`).
+
+use super::element::Element;
+use super::finding::Finding;
+use super::report::Report;
+
+/// A tag, or one attribute of it, that is not simulated yet.
+pub(super) struct Pending {
+    pub tag: &'static str,
+    /// `None`: the whole tag.
+    pub attribute: Option<&'static str>,
+    /// What happens instead.
+    pub instead: &'static str,
+}
+
+const fn tag(tag: &'static str, instead: &'static str) -> Pending {
+    Pending { tag, attribute: None, instead }
+}
+
+const fn attribute(tag: &'static str, attribute: &'static str, instead: &'static str) -> Pending {
+    Pending { tag, attribute: Some(attribute), instead }
+}
+
+/// The list.
+pub(super) const PENDING: &[Pending] = &[
+    tag("proxy", "there is no contact yet"),
+    tag("surface", "there is no contact yet"),
+    tag("damping", "bodies are not damped"),
+    tag("deactivate", "bodies stay active"),
+    tag("constraint", "joints do not yield and do not break"),
+    tag("chain", "there is no contact inside a chain yet"),
+    attribute("drive", "static_resistance", "the axis turns without this resistance"),
+    attribute("drive", "dynamic_resistance", "the axis turns without this resistance"),
+    attribute("drive", "short_brake", "the axis is not braked"),
+    attribute("drive", "rotor_inertia", "the motor adds no inertia"),
+    attribute("drive", "gear_ratio", "the motor adds no inertia"),
+    attribute("joint_group", "e", "the axis is simulated as a plain prismatic joint"),
+];
+
+/// Adds a note for each row that `element`, an instance of the tag `name`, calls for; each row is told once.
+pub(super) fn note(name: &str, element: &Element, report: &mut Report) {
+    for row in PENDING.iter().filter(|row| row.tag == name) {
+        let (place, what) = match row.attribute {
+            None => (element.place(report), format!("<{name}>")),
+            Some(attribute) if element.value(attribute).is_none() => continue,
+            Some(attribute) => (element.place_of(attribute, report), format!("<{name} {attribute}>")),
+        };
+        let message = format!("{what} is read but not simulated yet: {}", row.instead);
+        report.add_once(&what, Finding::note("not-simulated-yet", place, message, ""));
+    }
+}

@@ -1,0 +1,168 @@
+//! `<realnoid>` inside `<link>`: body, proxy, surface, damping, deactivate, monitor.
+
+use super::super::element::{Domain, Element};
+use super::super::finding::Finding;
+use super::super::report::Report;
+use super::super::rules::{Attribute, Kind, Tag, Values};
+use super::super::{Body, BodyDamping, Deactivate, Dimension, MonitorFrame, PlacedShape, Surface, shapes};
+
+const NON_NEGATIVE: Kind = Kind::Number(Domain::NonNegative);
+const UNIT: Kind = Kind::Number(Domain::Unit);
+
+/// B-3: 0.001 of the smallest system unit, the millimetre.
+const LEAST_THICKNESS: f64 = 1e-6;
+
+pub(in super::super) const BODY: Tag = Tag {
+    name: "body",
+    attributes: &[
+        Attribute::required("specific_gravity", NON_NEGATIVE),
+        Attribute::optional("dimension", Kind::Word(&["2d", "3d"])),
+        Attribute::optional("thickness", Kind::Number(Domain::AtLeast(LEAST_THICKNESS))),
+        Attribute::optional("l_scale", Kind::Number(Domain::Positive)),
+    ],
+    children: &["shape"],
+};
+
+pub(in super::super) const SURFACE: Tag = Tag {
+    name: "surface",
+    attributes: &[
+        Attribute::optional("friction", NON_NEGATIVE),
+        Attribute::optional("rolling_friction", NON_NEGATIVE),
+        Attribute::optional("spinning_friction", NON_NEGATIVE),
+        Attribute::optional("restitution", UNIT),
+        Attribute::optional("margin", NON_NEGATIVE),
+    ],
+    children: &[],
+};
+
+pub(in super::super) const DAMPING: Tag = Tag {
+    name: "damping",
+    attributes: &[Attribute::optional("linear", UNIT), Attribute::optional("angular", UNIT)],
+    children: &[],
+};
+
+pub(in super::super) const DEACTIVATE: Tag = Tag {
+    name: "deactivate",
+    attributes: &[
+        Attribute::optional("linear", NON_NEGATIVE),
+        Attribute::optional("angular", NON_NEGATIVE),
+        Attribute::optional("after", NON_NEGATIVE),
+    ],
+    children: &[],
+};
+
+pub(in super::super) const MONITOR: Tag =
+    Tag { name: "monitor", attributes: &[Attribute::optional("frame", Kind::Word(&["body", "world"]))], children: &[] };
+
+/// What is inside of these is read by `shapes`.
+const PROXY: Tag = Tag { name: "proxy", attributes: &[], children: &[] };
+const SHAPE: Tag = Tag { name: "shape", attributes: &[], children: &[] };
+
+/// Names of the tags that may stand here.
+pub(in super::super) const NAMES: &[&str] = &["body", "proxy", "surface", "damping", "deactivate", "monitor"];
+
+/// What the tags of one link say.
+#[derive(Default)]
+pub(in super::super) struct LinkTags {
+    pub body: Option<Body>,
+    pub proxies: Vec<PlacedShape>,
+    pub surface: Option<Surface>,
+    pub damping: Option<BodyDamping>,
+    pub deactivate: Option<Deactivate>,
+    pub monitor: Option<MonitorFrame>,
+}
+
+/// Reads the `<realnoid>` elements of a link.
+pub(in super::super) fn read(link: &Element, report: &mut Report) -> LinkTags {
+    super::refuse_attributes(link, report);
+    let mut tags = LinkTags::default();
+    for element in super::collect(link, NAMES, &["proxy"], report) {
+        match element.tag() {
+            "body" => tags.body = read_body(&element, report),
+            "proxy" => tags.proxies.extend(read_holder(&element, report)),
+            "surface" => tags.surface = Some(read_surface(&element, report)),
+            "damping" => tags.damping = Some(read_damping(&element, report)),
+            "deactivate" => tags.deactivate = Some(read_deactivate(&element, report)),
+            _ => tags.monitor = Some(read_monitor(&element, report)),
+        }
+    }
+    tags
+}
+
+fn read_body(element: &Element, report: &mut Report) -> Option<Body> {
+    let values = BODY.read(element, report);
+    let shapes = element.all("shape").filter_map(|shape| read_holder(&shape, report)).collect();
+    Some(Body {
+        at: element.place(report).at,
+        dimension: read_dimension(&values, element, report),
+        specific_gravity: values.number("specific_gravity")?,
+        l_scale: values.number_or("l_scale", 1.0),
+        shapes,
+    })
+}
+
+fn read_dimension(values: &Values, element: &Element, report: &mut Report) -> Dimension {
+    let hollow = values.word("dimension") == Some("2d");
+    match (hollow, values.number("thickness")) {
+        (true, Some(thickness)) => Dimension::Hollow { thickness },
+        (false, None) => Dimension::Solid,
+        (true, None) => {
+            if element.value("thickness").is_none() {
+                let message = "a hollow body (dimension = 2d) needs the thickness of its wall".to_string();
+                let mend = "add thickness=\"0.003\" (metres)";
+                report.add(Finding::error("missing-attribute", element.place_of("dimension", report), message, mend));
+            }
+            Dimension::Solid
+        }
+        (false, Some(_)) => {
+            let message = "a solid body has no wall thickness".to_string();
+            let mend = "write dimension=\"2d\" for a hollow body, or take `thickness` out";
+            report.add(Finding::error("thickness", element.place_of("thickness", report), message, mend));
+            Dimension::Solid
+        }
+    }
+}
+
+fn read_holder(element: &Element, report: &mut Report) -> Option<PlacedShape> {
+    let holder = if element.tag() == PROXY.name { PROXY } else { SHAPE };
+    holder.read_attributes(element, report);
+    shapes::read_placed(element, report)
+}
+
+fn read_surface(element: &Element, report: &mut Report) -> Surface {
+    let values = SURFACE.read(element, report);
+    Surface {
+        at: element.place(report).at,
+        friction: values.number("friction"),
+        rolling_friction: values.number("rolling_friction"),
+        spinning_friction: values.number("spinning_friction"),
+        restitution: values.number("restitution"),
+        margin: values.number("margin"),
+    }
+}
+
+fn read_damping(element: &Element, report: &mut Report) -> BodyDamping {
+    let values = DAMPING.read(element, report);
+    BodyDamping {
+        at: element.place(report).at,
+        linear: values.number_or("linear", 0.0),
+        angular: values.number_or("angular", 0.0),
+    }
+}
+
+fn read_deactivate(element: &Element, report: &mut Report) -> Deactivate {
+    let values = DEACTIVATE.read(element, report);
+    Deactivate {
+        at: element.place(report).at,
+        linear: values.number_or("linear", 0.0),
+        angular: values.number_or("angular", 0.0),
+        after: values.number_or("after", 0.0),
+    }
+}
+
+fn read_monitor(element: &Element, report: &mut Report) -> MonitorFrame {
+    match MONITOR.read(element, report).word("frame") {
+        Some("world") => MonitorFrame::World,
+        _ => MonitorFrame::Body,
+    }
+}

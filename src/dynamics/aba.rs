@@ -1,0 +1,387 @@
+//! Forward dynamics: the articulated-body algorithm (Featherstone 2008, §7.3), O(n), and its hybrid form (§9.2).
+//!
+//! A joint of n degrees of freedom is n rank-1 eliminations in the child's frame, the one nearest the child first; that is
+//! exact block elimination. Spherical and floating joints eliminate as a block. Velocity terms and rigid inertias are
+//! recomputed instead of stored: the small workspace is what makes it fast.
+
+use super::DofIn;
+use super::articulated::{Acc, Art, Spatial};
+use super::ball::{Ball, BallIn, eliminate_ball, eliminate_floating};
+use super::joint::{bias, joint_transform, joint_velocity, universal_axis};
+use crate::math::{Fma, M3, Real, S3, V3};
+use crate::model::{AxisSlot, Body, JointType, Model};
+
+/// Frame and motion of a body; its velocity gives way to its acceleration in the last pass.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Kin<T> {
+    pub r: M3<T>,
+    pub w: V3<T>,
+    pub v: V3<T>,
+}
+
+/// What the elimination of one degree of freedom leaves: `q̈ = x − d·(U·a)`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Dof<T> {
+    pub(crate) ua: V3<T>,
+    pub(crate) ul: V3<T>,
+    /// 1/D, or 0 for a locked one.
+    pub(crate) d: T,
+    /// Torque left over, divided by D; the prescribed acceleration of a locked one.
+    pub(crate) x: T,
+    /// Own part of the reaction of a locked one: `S·p + S·U q̈`.
+    pub(crate) own: T,
+}
+
+/// Scratch of the dynamics of one model. Makes its memory once.
+#[derive(Clone, Debug)]
+pub struct Workspace<T> {
+    pub(crate) kin: Vec<Kin<T>>,
+    pub(crate) acc: Vec<Acc<T>>,
+    pub(crate) dof: Vec<Dof<T>>,
+    pub(crate) balls: Vec<Ball<T>>,
+    /// Inputs of the hybrid dynamics, one per velocity.
+    pub dofs: Vec<DofIn<T>>,
+    /// Inputs of the hybrid dynamics, one per spherical joint.
+    pub ball_in: Vec<BallIn<T>>,
+    /// Torque that keeps a locked velocity coordinate to its acceleration (filled by [`aba_hybrid`]).
+    pub reaction: Vec<T>,
+}
+
+impl<T: Real> Workspace<T> {
+    /// Room for this model.
+    pub fn new(model: &Model) -> Self {
+        let (n, nv) = (model.bodies.len(), model.nv);
+        let o = T::of(0.0);
+        Self {
+            kin: vec![Kin { r: M3::identity(), ..Kin::default() }; n],
+            acc: vec![Acc::default(); n],
+            dof: vec![Dof::default(); nv],
+            balls: vec![Ball::default(); model.balls],
+            dofs: vec![DofIn::free(o); nv],
+            ball_in: vec![BallIn::default(); model.balls],
+            reaction: vec![o; nv],
+        }
+    }
+
+    /// Acceleration per torque of an axis in the last solve, with what hangs on it free and its base held: 1/D of the
+    /// articulated inertia, an upper bound of how fast a viscous term on it can be.
+    pub fn mobility(&self, m: &Model, axis: usize) -> T {
+        match m.axes[axis].slot {
+            AxisSlot::Scalar { v, .. } => self.dof[v].d,
+            AxisSlot::Euler { group, angle } => self.balls[m.bodies[m.eulers[group].body].ball].mobility(angle),
+        }
+    }
+
+    /// Acceleration of the world minus gravity.
+    #[inline(always)]
+    pub(crate) fn start(&mut self, gravity: [f64; 3]) {
+        let g = V3::new(T::of(gravity[0]), T::of(gravity[1]), T::of(gravity[2]));
+        self.kin[0] = Kin { r: M3::identity(), w: V3::default(), v: -g };
+    }
+}
+
+/// Accelerations `qdd` (nv) of the state `q` (nq), `v` (nv) under torques `tau` (nv) and gravity (m/s², world).
+///
+/// The same bits on every machine. Lengths must fit the model.
+pub fn aba(
+    m: &Model,
+    ws: &mut Workspace<f64>,
+    state: (&[f64], &[f64]),
+    tau: &[f64],
+    gravity: [f64; 3],
+    qdd: &mut [f64],
+) {
+    kernel::<f64, false>(m, ws, state, tau, gravity, qdd);
+}
+
+/// As [`aba`], with fused multiply-add: about a tenth faster, other last bits. `false` if the machine has no FMA; nothing
+/// is computed then.
+#[must_use]
+pub fn aba_fused(
+    m: &Model,
+    ws: &mut Workspace<Fma>,
+    state: (&[f64], &[f64]),
+    tau: &[f64],
+    gravity: [f64; 3],
+    qdd: &mut [f64],
+) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+        let (q, v) = (fma_slice(state.0), fma_slice(state.1));
+        // SAFETY: the machine has just been asked for both features.
+        unsafe { fused(m, ws, (q, v), fma_slice(tau), gravity, fma_slice_mut(qdd)) };
+        return true;
+    }
+    false
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn fused(m: &Model, ws: &mut Workspace<Fma>, state: (&[Fma], &[Fma]), tau: &[Fma], gravity: [f64; 3], qdd: &mut [Fma]) {
+    kernel::<Fma, false>(m, ws, state, tau, gravity, qdd);
+}
+
+fn fma_slice(x: &[f64]) -> &[Fma] {
+    // SAFETY: Fma is repr(transparent) over f64.
+    unsafe { std::slice::from_raw_parts(x.as_ptr().cast(), x.len()) }
+}
+
+fn fma_slice_mut(x: &mut [f64]) -> &mut [Fma] {
+    // SAFETY: Fma is repr(transparent) over f64, and the borrow is exclusive.
+    unsafe { std::slice::from_raw_parts_mut(x.as_mut_ptr().cast(), x.len()) }
+}
+
+/// Hybrid dynamics: torques, implicit diagonals and locks from `ws.dofs` and `ws.ball_in`; reactions of locked
+/// coordinates to `ws.reaction` and `ws.ball_in`.
+pub fn aba_hybrid(m: &Model, ws: &mut Workspace<f64>, state: (&[f64], &[f64]), gravity: [f64; 3], qdd: &mut [f64]) {
+    kernel::<f64, true>(m, ws, state, &[], gravity, qdd);
+}
+
+#[inline(always)]
+fn kernel<T: Real, const HYBRID: bool>(
+    m: &Model,
+    ws: &mut Workspace<T>,
+    (q, v): (&[T], &[T]),
+    tau: &[T],
+    gravity: [f64; 3],
+    qdd: &mut [T],
+) {
+    velocities(m, ws, q, v);
+    for i in (1..m.bodies.len()).rev() {
+        inward::<T, HYBRID>(m, ws, i, (q, v), tau);
+    }
+    ws.start(gravity);
+    for i in 1..m.bodies.len() {
+        outward::<T, HYBRID>(m, ws, i, (q, v), qdd);
+    }
+}
+
+/// First pass: frames and velocities, from the world outwards; clears what the second pass sums into.
+#[inline(always)]
+pub(crate) fn velocities<T: Real>(m: &Model, ws: &mut Workspace<T>, q: &[T], v: &[T]) {
+    ws.kin[0] = Kin { r: M3::identity(), ..Kin::default() };
+    for i in 1..m.bodies.len() {
+        let b = &m.bodies[i];
+        let (r, p) = joint_transform(b, q);
+        let own = joint_velocity(b, q, v);
+        let parent = ws.kin[b.parent];
+        let w = r.tv(parent.w) + own.a;
+        let l = r.tv(parent.w.cross_add(p, parent.v)) + own.l;
+        ws.kin[i] = Kin { r, w, v: l };
+        ws.acc[i] = Acc::default();
+    }
+}
+
+/// Second pass, one body: eliminate its joint, hand what remains to the parent.
+#[inline(always)]
+fn inward<T: Real, const HYBRID: bool>(m: &Model, ws: &mut Workspace<T>, i: usize, (q, v): (&[T], &[T]), tau: &[T]) {
+    let b = &m.bodies[i];
+    let kin = ws.kin[i];
+    let mut k = ws.acc[i];
+    k.add_rigid(b, kin.w, kin.v);
+    if b.joint == JointType::Floating {
+        let t = |n: usize| if HYBRID { ws.dofs[b.v + n].tau } else { tau[b.v + n] };
+        let own = [t(0), t(1), t(2), t(3), t(4), t(5)];
+        eliminate_floating(&k, own, &mut ws.dof[b.v..b.v + 6]);
+        hand_over_floating(m, ws, i, own, q);
+        return;
+    }
+    let c = bias(b, q, v, (kin.w, kin.v));
+    match b.joint {
+        JointType::Revolute if !HYBRID || ws.dofs[b.v].plain => {
+            let t = if HYBRID { ws.dofs[b.v].tau } else { tau[b.v] };
+            let given = revolute(&k, &kin.r, V3::of(b.tree_p), c, (&mut ws.dof[b.v], t));
+            if b.parent != 0 {
+                ws.acc[b.parent].add(&given);
+            }
+            return;
+        }
+        JointType::Revolute => eliminate_axis(&mut k, axis_z(), &mut ws.dof[b.v], &ws.dofs[b.v]),
+        JointType::Prismatic => {
+            let input = scalar_input::<T, HYBRID>(ws, tau, b.v);
+            eliminate_linear_z(&mut k, &mut ws.dof[b.v], &input);
+        }
+        JointType::Universal => {
+            let (first, second) =
+                (scalar_input::<T, HYBRID>(ws, tau, b.v), scalar_input::<T, HYBRID>(ws, tau, b.v + 1));
+            eliminate_axis(&mut k, axis_z(), &mut ws.dof[b.v + 1], &second);
+            eliminate_axis(&mut k, universal_axis(q[b.q + 1].sin_cos()), &mut ws.dof[b.v], &first);
+        }
+        JointType::Spherical | JointType::Floating => {
+            if !HYBRID {
+                ws.ball_in[b.ball] = BallIn { tau: V3::new(tau[b.v], tau[b.v + 1], tau[b.v + 2]), ..BallIn::default() };
+            }
+            eliminate_ball(&mut k, &mut ws.balls[b.ball], &ws.ball_in[b.ball]);
+        }
+    }
+    if b.parent != 0 {
+        k.push(c);
+        let (r, p) = (kin.r, joint_transform_p(b, q));
+        ws.acc[b.parent].add(&k.to_parent(&r, p));
+    }
+}
+
+/// A floating joint hands its own force, and no inertia, to the parent.
+#[inline(always)]
+fn hand_over_floating<T: Real>(m: &Model, ws: &mut Workspace<T>, i: usize, own: [T; 6], q: &[T]) {
+    let b = &m.bodies[i];
+    if b.parent == 0 {
+        return;
+    }
+    let force = Acc { ia: Art::default(), n: V3::new(own[0], own[1], own[2]), f: V3::new(own[3], own[4], own[5]) };
+    let (r, p) = (ws.kin[i].r, joint_transform_p(b, q));
+    ws.acc[b.parent].add(&force.to_parent(&r, p));
+}
+
+/// Third pass, one body: accelerations, from the world outwards.
+#[inline(always)]
+fn outward<T: Real, const HYBRID: bool>(
+    m: &Model,
+    ws: &mut Workspace<T>,
+    i: usize,
+    (q, v): (&[T], &[T]),
+    qdd: &mut [T],
+) {
+    let b = &m.bodies[i];
+    let kin = ws.kin[i];
+    let c = bias(b, q, v, (kin.w, kin.v));
+    let parent = ws.kin[b.parent];
+    let p = joint_transform_p(b, q);
+    let mut a = kin.r.tv(parent.w) + c.a;
+    let mut l = kin.r.tv(parent.w.cross_add(p, parent.v)) + c.l;
+    match b.joint {
+        JointType::Revolute => a.z += scalar_out::<T, HYBRID>(ws, b.v, (a, l), qdd),
+        JointType::Prismatic => l.z += scalar_out::<T, HYBRID>(ws, b.v, (a, l), qdd),
+        JointType::Universal => {
+            let first = scalar_out::<T, HYBRID>(ws, b.v, (a, l), qdd);
+            a = universal_axis(q[b.q + 1].sin_cos()).mad(first, a);
+            a.z += scalar_out::<T, HYBRID>(ws, b.v + 1, (a, l), qdd);
+        }
+        JointType::Spherical => {
+            let out = ws.balls[b.ball].acceleration(Spatial { a, l });
+            if HYBRID {
+                ws.ball_in[b.ball].react(&ws.balls[b.ball], Spatial { a, l });
+            }
+            (qdd[b.v], qdd[b.v + 1], qdd[b.v + 2]) = (out.x, out.y, out.z);
+            a += out;
+        }
+        JointType::Floating => {
+            let own = &ws.dof[b.v..b.v + 6];
+            let (ga, gl) = (V3::new(own[0].x, own[1].x, own[2].x), V3::new(own[3].x, own[4].x, own[5].x));
+            let (da, dl) = (ga - a, gl - l);
+            (qdd[b.v], qdd[b.v + 1], qdd[b.v + 2]) = (da.x, da.y, da.z);
+            (qdd[b.v + 3], qdd[b.v + 4], qdd[b.v + 5]) = (dl.x, dl.y, dl.z);
+            (a, l) = (ga, gl);
+        }
+    }
+    ws.kin[i].w = a;
+    ws.kin[i].v = l;
+}
+
+/// Acceleration of one degree of freedom, given that of the frame it moves against.
+#[inline(always)]
+fn scalar_out<T: Real, const HYBRID: bool>(
+    ws: &mut Workspace<T>,
+    k: usize,
+    (a, l): (V3<T>, V3<T>),
+    qdd: &mut [T],
+) -> T {
+    let d = ws.dof[k];
+    let reach = d.ua.dot(a) + d.ul.dot(l);
+    let acceleration = (-d.d).mad(reach, d.x);
+    if HYBRID {
+        ws.reaction[k] = d.own + reach;
+    }
+    qdd[k] = acceleration;
+    acceleration
+}
+
+#[inline(always)]
+pub(crate) fn joint_transform_p<T: Real>(b: &Body, q: &[T]) -> V3<T> {
+    match b.joint {
+        JointType::Prismatic => V3::of(b.tree_r.col2()).mad(q[b.q], V3::of(b.tree_p)),
+        JointType::Floating => M3::of(&b.tree_r).mv(V3::new(q[b.q], q[b.q + 1], q[b.q + 2])) + V3::of(b.tree_p),
+        _ => V3::of(b.tree_p),
+    }
+}
+
+#[inline(always)]
+fn axis_z<T: Real>() -> V3<T> {
+    V3::new(T::of(0.0), T::of(0.0), T::of(1.0))
+}
+
+#[inline(always)]
+fn scalar_input<T: Real, const HYBRID: bool>(ws: &Workspace<T>, tau: &[T], k: usize) -> DofIn<T> {
+    if HYBRID { ws.dofs[k] } else { DofIn::free(tau[k]) }
+}
+
+/// Eliminates a rotation about `s`, a direction in the child frame.
+#[inline(always)]
+fn eliminate_axis<T: Real>(k: &mut Acc<T>, s: V3<T>, d: &mut Dof<T>, input: &DofIn<T>) {
+    let (ua, ul) = (k.ia.j.mv(s), k.ia.h.tv(s));
+    finish(k, (ua, ul), (s.dot(ua), s.dot(k.n)), d, input);
+}
+
+/// Eliminates a translation along z.
+#[inline(always)]
+fn eliminate_linear_z<T: Real>(k: &mut Acc<T>, d: &mut Dof<T>, input: &DofIn<T>) {
+    let (ua, ul) = (k.ia.h.col2(), k.ia.m.row2());
+    finish(k, (ua, ul), (ul.z, k.f.z), d, input);
+}
+
+/// `own` is S·U and S·p.
+#[inline(always)]
+fn finish<T: Real>(k: &mut Acc<T>, (ua, ul): (V3<T>, V3<T>), own: (T, T), d: &mut Dof<T>, input: &DofIn<T>) {
+    let (inertia, force) = own;
+    let di = input.free / (inertia + input.diagonal);
+    let locked = (T::of(1.0) - input.free) * input.acceleration;
+    let x = di.mad(input.tau - force, locked);
+    *d = Dof { ua, ul, d: di, x, own: inertia.mad(locked, force) };
+    k.ia.eliminate(ua, ul, di);
+    k.n += ua * x;
+    k.f += ul * x;
+}
+
+/// Eliminates a free rotation about z without added inertia, and moves to the parent. The row and column of J that belong
+/// to z vanish, and so does H's row: they are left out.
+#[inline(always)]
+fn revolute<T: Real>(k: &Acc<T>, r: &M3<T>, p: V3<T>, c: Spatial<T>, (d, tau): (&mut Dof<T>, T)) -> Acc<T> {
+    let Art { j, h, mut m } = k.ia;
+    let (ua, ul) = (j.row2(), h.r[2]);
+    let di = T::of(1.0) / ua.z;
+    let x = (tau - k.n.z) * di;
+    *d = Dof { ua, ul, d: di, x, own: k.n.z };
+    let (ax, ay, l) = (ua.x * di, ua.y * di, ul * di);
+    let (jxx, jxy, jyy) = ((-ax).mad(ua.x, j.xx), (-ax).mad(ua.y, j.xy), (-ay).mad(ua.y, j.yy));
+    let (h0, h1) = (ul.mad(-ax, h.r[0]), ul.mad(-ay, h.r[1]));
+    m.sub_outer(l, ul);
+    let (cx, cy) = (c.a.x, c.a.y);
+    let nx = ua.x.mad(x, jxx.mad(cx, jxy.mad(cy, h0.dot(c.l) + k.n.x)));
+    let ny = ua.y.mad(x, jxy.mad(cx, jyy.mad(cy, h1.dot(c.l) + k.n.y)));
+    let f = ul.mad(x, h0.mad(cx, h1.mad(cy, m.mv(c.l) + k.f)));
+    let (g0, g1) = (r.mv(h0), r.mv(h1));
+    let turned = Art { j: flat_rotated(r, jxx, jxy, jyy), h: outer2(r, g0, g1), m: m.rotated(r) };
+    let f = r.mv(f);
+    Acc { ia: turned.moved(p), f, n: p.cross_add(f, r.mv(V3::new(nx, ny, tau))) }
+}
+
+/// `R J Rᵀ` of a J whose z row and column are zero.
+#[inline(always)]
+fn flat_rotated<T: Real>(r: &M3<T>, xx: T, xy: T, yy: T) -> S3<T> {
+    let (c0, c1) = (r.col0(), r.col1());
+    let (a, b) = (c1.mad(xy, c0 * xx), c1.mad(yy, c0 * xy));
+    S3 {
+        xx: a.x.mad(c0.x, b.x * c1.x),
+        xy: a.x.mad(c0.y, b.x * c1.y),
+        xz: a.x.mad(c0.z, b.x * c1.z),
+        yy: a.y.mad(c0.y, b.y * c1.y),
+        yz: a.y.mad(c0.z, b.y * c1.z),
+        zz: a.z.mad(c0.z, b.z * c1.z),
+    }
+}
+
+/// `R [g0; g1; 0]` where the rows are already turned.
+#[inline(always)]
+fn outer2<T: Real>(r: &M3<T>, g0: V3<T>, g1: V3<T>) -> M3<T> {
+    M3::rows(g0.mad(r.r[0].x, g1 * r.r[0].y), g0.mad(r.r[1].x, g1 * r.r[1].y), g0.mad(r.r[2].x, g1 * r.r[2].y))
+}

@@ -1,0 +1,111 @@
+//! Articulated-body inertias: their sums, shifts and rotations.
+
+use crate::math::{M3, Real, S3, V3};
+use crate::model::Body;
+
+/// Articulated inertia `[J H; Hᵀ M]` about the body's origin: (torque, force) per (angular, linear) acceleration.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Art<T> {
+    pub j: S3<T>,
+    pub h: M3<T>,
+    pub m: S3<T>,
+}
+
+/// What a body collects from its children: articulated inertia and bias force.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Acc<T> {
+    pub ia: Art<T>,
+    pub n: V3<T>,
+    pub f: V3<T>,
+}
+
+/// Spatial vector, angular first.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Spatial<T> {
+    pub a: V3<T>,
+    pub l: V3<T>,
+}
+
+impl<T: Real> Acc<T> {
+    #[inline(always)]
+    pub fn add(&mut self, o: &Self) {
+        self.ia.j += o.ia.j;
+        for (a, b) in self.ia.h.r.iter_mut().zip(o.ia.h.r) {
+            *a += b;
+        }
+        self.ia.m += o.ia.m;
+        self.n += o.n;
+        self.f += o.f;
+    }
+
+    /// Adds a rigid body's own inertia and its velocity-dependent bias `v ×* I v`.
+    #[inline(always)]
+    pub fn add_rigid(&mut self, b: &Body, w: V3<T>, v: V3<T>) {
+        let (m, mc, j) = (T::of(b.mass), V3::of(b.mc), S3::of(&b.inertia));
+        self.ia.j += j;
+        self.ia.h.r[0].y -= mc.z;
+        self.ia.h.r[0].z += mc.y;
+        self.ia.h.r[1].x += mc.z;
+        self.ia.h.r[1].z -= mc.x;
+        self.ia.h.r[2].x -= mc.y;
+        self.ia.h.r[2].y += mc.x;
+        self.ia.m.xx += m;
+        self.ia.m.yy += m;
+        self.ia.m.zz += m;
+        let linear = w.cross(mc);
+        let p = v.mad(m, linear);
+        let angular = mc.cross_add(v, j.mv(w));
+        self.n = w.cross_add(angular, v.cross_add(linear, self.n));
+        self.f = w.cross_add(p, self.f);
+    }
+
+    /// Adds `IA·a` to the bias.
+    #[inline(always)]
+    pub fn push(&mut self, a: Spatial<T>) {
+        self.n += self.ia.j.mv(a.a) + self.ia.h.mv(a.l);
+        self.f += self.ia.h.tv(a.a) + self.ia.m.mv(a.l);
+    }
+
+    /// The same about the parent's origin, in the parent's axes.
+    #[inline(always)]
+    pub fn to_parent(self, r: &M3<T>, p: V3<T>) -> Self {
+        let h = r.mm(&self.ia.h).mmt(r);
+        let ia = Art { j: self.ia.j.rotated(r), h, m: self.ia.m.rotated(r) }.moved(p);
+        let f = r.mv(self.f);
+        Self { ia, f, n: p.cross_add(f, r.mv(self.n)) }
+    }
+}
+
+impl<T: Real> Art<T> {
+    /// About an origin that lies at −p: with P = [p×], H' = H + P M, J' = J − H P + P H'ᵀ.
+    #[inline(always)]
+    pub fn moved(self, p: V3<T>) -> Self {
+        let Self { mut j, h, m } = self;
+        let (m0, m1, m2) = (p.cross(m.row0()), p.cross(m.row1()), p.cross(m.row2()));
+        let g = M3::rows(
+            V3::new(h.r[0].x + m0.x, h.r[0].y + m1.x, h.r[0].z + m2.x),
+            V3::new(h.r[1].x + m0.y, h.r[1].y + m1.y, h.r[1].z + m2.y),
+            V3::new(h.r[2].x + m0.z, h.r[2].y + m1.z, h.r[2].z + m2.z),
+        );
+        let (a0, a1, a2) = (p.cross(h.r[0]), p.cross(h.r[1]), p.cross(h.r[2]));
+        let (b0, b1, b2) = (p.cross(g.r[0]), p.cross(g.r[1]), p.cross(g.r[2]));
+        j.xx += a0.x + b0.x;
+        j.xy += a0.y + b1.x;
+        j.xz += a0.z + b2.x;
+        j.yy += a1.y + b1.y;
+        j.yz += a1.z + b2.y;
+        j.zz += a2.z + b2.z;
+        Self { j, h: g, m }
+    }
+
+    /// Takes away `U Uᵀ·d` of an eliminated direction.
+    #[inline(always)]
+    pub fn eliminate(&mut self, ua: V3<T>, ul: V3<T>, d: T) {
+        let (a, l) = (ua * d, ul * d);
+        self.j.sub_outer(a, ua);
+        self.h.r[0] = ul.mad(-a.x, self.h.r[0]);
+        self.h.r[1] = ul.mad(-a.y, self.h.r[1]);
+        self.h.r[2] = ul.mad(-a.z, self.h.r[2]);
+        self.m.sub_outer(l, ul);
+    }
+}

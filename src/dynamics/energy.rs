@@ -1,0 +1,56 @@
+//! Energy and momentum of a state.
+
+use super::Kinematics;
+use crate::math::{S3, V3, Vec3};
+use crate::model::Model;
+
+/// Energies in J; the potential is zero with every centre of mass at the height of the world's origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// ½ vᵀ M v.
+    pub kinetic: f64,
+    /// −Σ m g·c.
+    pub potential: f64,
+}
+
+/// Momentum in the world frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Momentum {
+    /// About the common centre of mass, kg·m²/s.
+    pub angular: Vec3,
+    /// kg·m/s.
+    pub linear: Vec3,
+    /// Common centre of mass, m.
+    pub center: Vec3,
+}
+
+/// Energy of the moving bodies under gravity (m/s², world).
+pub fn energy(m: &Model, k: &Kinematics, gravity: [f64; 3]) -> Energy {
+    let g = V3::new(gravity[0], gravity[1], gravity[2]);
+    let mut e = Energy::default();
+    for (i, b) in m.bodies.iter().enumerate().skip(1) {
+        let (w, v) = (k.w[i], k.v[i]);
+        let linear = v * b.mass + w.cross(b.mc);
+        let angular = S3::mv(&b.inertia, w) + b.mc.cross(v);
+        e.kinetic += 0.5 * (w.dot(angular) + v.dot(linear));
+        e.potential -= g.dot(k.r[i].mv(b.mc) + k.p[i] * b.mass);
+    }
+    e
+}
+
+/// Momentum of the moving bodies.
+pub fn momentum(m: &Model, k: &Kinematics) -> Momentum {
+    let (mut about_origin, mut linear, mut moment, mut mass) = (V3::default(), V3::default(), V3::default(), 0.0);
+    for (i, b) in m.bodies.iter().enumerate().skip(1) {
+        let (w, v) = (k.w[i], k.v[i]);
+        let p = k.r[i].mv(v * b.mass + w.cross(b.mc));
+        let l = k.r[i].mv(b.inertia.mv(w) + b.mc.cross(v));
+        about_origin += l + k.p[i].cross(p);
+        linear += p;
+        moment += k.r[i].mv(b.mc) + k.p[i] * b.mass;
+        mass += b.mass;
+    }
+    let center = if mass > 0.0 { moment * (1.0 / mass) } else { moment };
+    let angular = about_origin - center.cross(linear);
+    Momentum { angular: angular.into(), linear: linear.into(), center: center.into() }
+}

@@ -1,0 +1,129 @@
+//! Where the bodies are and how they move, in the world.
+
+use super::joint::{joint_transform, joint_velocity, turned_x, turned_z};
+use crate::math::{M3, Mat3, Pose, Quat, Real, Twist, V3, Vec3};
+use crate::model::{JointType, LinkFrame, Model};
+use nalgebra::{Rotation3, Translation3, UnitQuaternion};
+
+/// Frames and velocities of all bodies. Makes its memory once.
+#[derive(Clone, Debug)]
+pub struct Kinematics {
+    /// Per body: axes of its frame in the world.
+    pub r: Vec<M3<f64>>,
+    /// Per body: origin in the world, m.
+    pub p: Vec<V3<f64>>,
+    /// Per body: angular velocity along its own axes, rad/s.
+    pub w: Vec<V3<f64>>,
+    /// Per body: velocity of its origin along its own axes, m/s.
+    pub v: Vec<V3<f64>>,
+}
+
+impl Kinematics {
+    /// Room for this model.
+    pub fn new(model: &Model) -> Self {
+        let n = model.bodies.len();
+        Self {
+            r: vec![M3::identity(); n],
+            p: vec![V3::default(); n],
+            w: vec![V3::default(); n],
+            v: vec![V3::default(); n],
+        }
+    }
+}
+
+/// Fills `k` from the state `q` (nq), `v` (nv).
+pub fn kinematics(m: &Model, k: &mut Kinematics, q: &[f64], v: &[f64]) {
+    for i in 1..m.bodies.len() {
+        let b = &m.bodies[i];
+        let (r, p) = joint_transform(b, q);
+        let own = joint_velocity(b, q, v);
+        let (w0, v0, r0) = (k.w[b.parent], k.v[b.parent], k.r[b.parent]);
+        k.w[i] = r.tv(w0) + own.a;
+        k.v[i] = r.tv(w0.cross_add(p, v0)) + own.l;
+        k.p[i] = r0.mv(p) + k.p[b.parent];
+        k.r[i] = r0.mm(&r);
+    }
+}
+
+/// Frame of a link in the world. `q` and the angles of the 3DOF groups belong to the state that filled `k`.
+pub fn link_pose(m: &Model, k: &Kinematics, q: &[f64], angles: &[[f64; 3]], link: usize) -> Pose {
+    match &m.links[link].frame {
+        LinkFrame::OnBody { body, offset } => body_pose(k, *body) * offset,
+        LinkFrame::InGroup { body, turns, offset } => {
+            let b = &m.bodies[*body];
+            let r = k.r[b.parent].mm(&partial(m, *body, *turns, q, angles));
+            let p = k.r[b.parent].mv(b.tree_p) + k.p[b.parent];
+            pose(&r, p) * offset
+        }
+    }
+}
+
+/// Velocity of a link frame's origin along the link's own axes.
+pub fn link_twist(m: &Model, k: &Kinematics, (q, v): (&[f64], &[f64]), angles: &[[f64; 3]], link: usize) -> Twist {
+    match &m.links[link].frame {
+        LinkFrame::OnBody { body, offset } => {
+            let (w, v) = (Vec3::from(k.w[*body]), Vec3::from(k.v[*body]));
+            seen_from(offset, w, v)
+        }
+        LinkFrame::InGroup { body, turns, offset } => {
+            let b = &m.bodies[*body];
+            let r = partial(m, *body, *turns, q, angles);
+            let parent = (k.w[b.parent], k.v[b.parent]);
+            let linear = r.tv(parent.0.cross_add(b.tree_p, parent.1));
+            let angular = r.tv(parent.0) + partial_rate(m, *body, *turns, v, angles);
+            seen_from(offset, angular.into(), linear.into())
+        }
+    }
+}
+
+/// A twist at the origin of a frame, moved to and expressed in `X_BL`.
+fn seen_from(offset: &Pose, w: Vec3, v: Vec3) -> Twist {
+    let back = offset.rotation.inverse();
+    Twist { angular: back * w, linear: back * (v + w.cross(&offset.translation.vector)) }
+}
+
+/// Frame of a group's massless link in the parent body: the joint frame after the first turns.
+fn partial(m: &Model, body: usize, turns: usize, q: &[f64], angles: &[[f64; 3]]) -> M3<f64> {
+    let b = &m.bodies[body];
+    if b.joint == JointType::Universal {
+        return turned_x(&b.tree_r, q[b.q].sin_cos());
+    }
+    let hpb = angles[group_of(m, body)];
+    let r = turned_z(&b.tree_r, Real::sin_cos(hpb[0]));
+    if turns == 1 { r } else { turned_y(&r, hpb[1]) }
+}
+
+/// Angular velocity of that frame against the parent, along its own axes.
+fn partial_rate(m: &Model, body: usize, turns: usize, v: &[f64], angles: &[[f64; 3]]) -> V3<f64> {
+    let b = &m.bodies[body];
+    if b.joint == JointType::Universal {
+        return V3::new(v[b.v], 0.0, 0.0);
+    }
+    let group = group_of(m, body);
+    let rates = m.eulers[group].rates(angles[group]);
+    let w = V3::new(v[b.v], v[b.v + 1], v[b.v + 2]);
+    let (h, p) = (rates.gradient[0].dot(w), rates.gradient[1].dot(w));
+    if turns == 1 {
+        return V3::new(0.0, 0.0, h);
+    }
+    let (s, c) = crate::math::sin_cos(angles[group][1]);
+    V3::new(-s * h, p, c * h)
+}
+
+fn group_of(m: &Model, body: usize) -> usize {
+    m.eulers.iter().position(|e| e.body == body).unwrap_or(0)
+}
+
+fn turned_y(r: &M3<f64>, angle: f64) -> M3<f64> {
+    let (s, c) = crate::math::sin_cos(angle);
+    r.mm(&M3::rows(V3::new(c, 0.0, s), V3::new(0.0, 1.0, 0.0), V3::new(-s, 0.0, c)))
+}
+
+fn body_pose(k: &Kinematics, body: usize) -> Pose {
+    pose(&k.r[body], k.p[body])
+}
+
+fn pose(r: &M3<f64>, p: V3<f64>) -> Pose {
+    let q: Quat = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(Mat3::from(*r)));
+    Pose::from_parts(Translation3::from(Vec3::from(p)), q)
+}

@@ -1,0 +1,295 @@
+//! rbx: reduced coordinates, one step at a time.
+
+use crate::dynamics::{Workspace, aba, coordinate_rates, exponential_step, normalize};
+use crate::math::{V3, Vec3};
+use crate::model::{AxisSlot, JointType, Model, rotation};
+use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef};
+
+/// How the state is advanced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// First order; damping, servos, stops and friction implicit. The default.
+    #[default]
+    SemiImplicitEuler,
+    /// Classical fourth order; steps in which a stop, dry friction at rest or a servo at its target acts, or a viscous
+    /// term is stiffer than the step, are made by the default instead, and counted.
+    Rk4,
+}
+
+impl Integrator {
+    /// Names for `--integrator` and the parameter `integrator`.
+    pub const NAMES: [(&'static str, Self); 2] = [("semi_implicit_euler", Self::SemiImplicitEuler), ("rk4", Self::Rk4)];
+
+    /// By name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|(n, _)| *n == name).map(|(_, i)| *i)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, i)| *i == self).map_or("", |(n, _)| n)
+    }
+}
+
+/// State of one robot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Coordinates (nq).
+    pub q: Vec<f64>,
+    /// Velocities (nv).
+    pub v: Vec<f64>,
+    /// H, P, B of each 3DOF group, continuous.
+    pub angles: Vec<[f64; 3]>,
+}
+
+impl State {
+    /// All angles at 0, or at the stop next to it; at rest.
+    pub fn initial(m: &Model) -> Self {
+        let mut s = Self { q: m.neutral(), v: vec![0.0; m.nv], angles: vec![[0.0; 3]; m.eulers.len()] };
+        for axis in 0..m.axes.len() {
+            let a = &m.axes[axis];
+            if a.lower > 0.0 || a.upper < 0.0 {
+                s.set_axis(m, axis, a.lower.max(a.upper.min(0.0)), 0.0);
+            }
+        }
+        s
+    }
+
+    /// Position (rad, m) and speed of an axis.
+    pub fn axis(&self, m: &Model, axis: usize) -> (f64, f64) {
+        match m.axes[axis].slot {
+            AxisSlot::Scalar { q, v } => (self.q[q], self.v[v]),
+            AxisSlot::Euler { group, angle } => {
+                let rates = m.eulers[group].rates(self.angles[group]);
+                (self.angles[group][angle], rates.gradient[angle].dot(self.group_velocity(m, group)))
+            }
+        }
+    }
+
+    fn group_velocity(&self, m: &Model, group: usize) -> V3<f64> {
+        let at = m.eulers[group].v;
+        V3::new(self.v[at], self.v[at + 1], self.v[at + 2])
+    }
+
+    /// Sets an axis; in a 3DOF group the other two angles and rates stay as they are.
+    pub fn set_axis(&mut self, m: &Model, axis: usize, position: f64, speed: f64) {
+        match m.axes[axis].slot {
+            AxisSlot::Scalar { q, v } => (self.q[q], self.v[v]) = (position, speed),
+            AxisSlot::Euler { group, angle } => {
+                let g = &m.eulers[group];
+                let w = self.group_velocity(m, group);
+                let old = g.rates(self.angles[group]);
+                let mut rates = [0, 1, 2].map(|k| old.gradient[k].dot(w));
+                rates[angle] = speed;
+                self.angles[group][angle] = position;
+                self.q[g.q..g.q + 4].copy_from_slice(&g.quaternion(self.angles[group]));
+                let d = g.directions(self.angles[group]);
+                let w = d[0] * rates[0] + d[1] * rates[1] + d[2] * rates[2];
+                self.v[g.v..g.v + 3].copy_from_slice(&[w.x, w.y, w.z]);
+            }
+        }
+    }
+
+    /// Sets the base of a free robot: position (m) and unit quaternion (x, y, z, w) in the world.
+    pub fn set_base_pose(&mut self, m: &Model, xyz: [f64; 3], xyzw: [f64; 4]) {
+        if let Some(b) = m.bodies.get(1).filter(|b| b.joint == JointType::Floating && b.parent == 0) {
+            self.q[b.q..b.q + 3].copy_from_slice(&xyz);
+            self.q[b.q + 3..b.q + 7].copy_from_slice(&[xyzw[3], xyzw[0], xyzw[1], xyzw[2]]);
+            normalize(&mut self.q[b.q + 3..b.q + 7]);
+        }
+    }
+
+    /// Sets the twist of a free base, in the base frame.
+    pub fn set_base_twist(&mut self, m: &Model, angular: Vec3, linear: Vec3) {
+        if let Some(b) = m.bodies.get(1).filter(|b| b.joint == JointType::Floating && b.parent == 0) {
+            for k in 0..3 {
+                (self.v[b.v + k], self.v[b.v + 3 + k]) = (angular[k], linear[k]);
+            }
+        }
+    }
+
+    fn read_angles(&mut self, m: &Model) {
+        for (g, angles) in m.eulers.iter().zip(&mut self.angles) {
+            let r = rotation([self.q[g.q], self.q[g.q + 1], self.q[g.q + 2], self.q[g.q + 3]]);
+            *angles = g.angles(&r, *angles);
+        }
+    }
+
+    fn as_ref(&self) -> StateRef<'_> {
+        StateRef { q: &self.q, v: &self.v, angles: &self.angles }
+    }
+
+    fn finite(&self) -> bool {
+        self.q.iter().chain(&self.v).all(|x| x.is_finite())
+    }
+}
+
+/// What one step needs to know.
+#[derive(Clone, Copy, Debug)]
+pub struct StepSettings {
+    /// Step, s.
+    pub h: f64,
+    /// m/s², world.
+    pub gravity: [f64; 3],
+    /// Passes of the axis set, at most.
+    pub passes: u32,
+    /// Integrator.
+    pub integrator: Integrator,
+}
+
+/// What became of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StepReport {
+    /// RK4 handed the step to semi-implicit Euler.
+    pub fell_back: bool,
+    /// The axis set did not settle within its passes.
+    pub unsettled: bool,
+    /// A 3DOF group was at its pole.
+    pub at_pole: bool,
+    /// The new state would not have been finite: it was not taken.
+    pub diverged: bool,
+}
+
+/// Buffers of the stages of RK4; made only when RK4 is chosen.
+#[derive(Clone, Debug, Default)]
+struct Stages {
+    start: State,
+    tau: Vec<f64>,
+    rates: Vec<f64>,
+    sum_q: Vec<f64>,
+    sum_v: Vec<f64>,
+}
+
+/// One robot in the rbx engine: a clone goes on with the same bits.
+#[derive(Clone, Debug)]
+pub struct Rbx {
+    /// State.
+    pub state: State,
+    /// Axis laws and efforts.
+    pub axes: AxisSet,
+    ws: Workspace<f64>,
+    qdd: Vec<f64>,
+    before: State,
+    stages: Option<Stages>,
+}
+
+impl Rbx {
+    /// At the initial state.
+    pub fn new(m: &Model) -> Self {
+        let state = State::initial(m);
+        Self {
+            axes: AxisSet::new(m),
+            ws: Workspace::new(m),
+            qdd: vec![0.0; m.nv],
+            before: state.clone(),
+            stages: None,
+            state,
+        }
+    }
+
+    /// Makes the memory that an integrator needs, so that steps make none.
+    pub fn prepare(&mut self, m: &Model, integrator: Integrator) {
+        self.stages = (integrator == Integrator::Rk4).then(|| Stages {
+            start: self.state.clone(),
+            tau: vec![0.0; m.nv],
+            rates: vec![0.0; m.nq],
+            sum_q: vec![0.0; m.nq],
+            sum_v: vec![0.0; m.nv],
+        });
+    }
+
+    /// One step: the laws of the axes, then the integrator; a state that is not finite is not taken.
+    pub fn step(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings) -> StepReport {
+        let mut report = StepReport::default();
+        copy(&mut self.before, &self.state);
+        report.at_pole = self.axes.prepare(m, self.state.as_ref(), commands, m.effects, s.h);
+        if s.integrator == Integrator::SemiImplicitEuler {
+            report.unsettled = !self.euler(m, s).settled;
+        } else if !self.rk4(m, s) {
+            copy(&mut self.state, &self.before);
+            self.axes.prepare(m, self.state.as_ref(), commands, m.effects, s.h);
+            report.fell_back = true;
+            report.unsettled = !self.euler(m, s).settled;
+        }
+        self.state.read_angles(m);
+        if !self.state.finite() {
+            copy(&mut self.state, &self.before);
+            report.diverged = true;
+        }
+        report
+    }
+
+    fn euler(&mut self, m: &Model, s: &StepSettings) -> Outcome {
+        let outcome = self.axes.solve(m, &mut self.ws, self.state.as_ref(), (s.gravity, s.h, s.passes), &mut self.qdd);
+        exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
+        outcome
+    }
+
+    /// Quaternions are integrated as four numbers and made unit again at the end, which keeps the order.
+    fn rk4(&mut self, m: &Model, s: &StepSettings) -> bool {
+        let Some(mut st) = self.stages.take() else { return false };
+        let smooth = self.rk4_stages(m, s, &mut st);
+        self.stages = Some(st);
+        smooth
+    }
+
+    fn rk4_stages(&mut self, m: &Model, s: &StepSettings, st: &mut Stages) -> bool {
+        copy(&mut st.start, &self.state);
+        st.sum_q.fill(0.0);
+        st.sum_v.fill(0.0);
+        for (stage, (ahead, weight)) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)].into_iter().enumerate() {
+            if stage > 0 {
+                for (x, (x0, r)) in self.state.q.iter_mut().zip(st.start.q.iter().zip(&st.rates)) {
+                    *x = x0 + ahead * s.h * r;
+                }
+                for (x, (x0, a)) in self.state.v.iter_mut().zip(st.start.v.iter().zip(&self.qdd)) {
+                    *x = x0 + ahead * s.h * a;
+                }
+                self.state.read_angles(m);
+            }
+            self.axes.smooth_torques(m, self.state.as_ref(), &mut st.tau);
+            aba(m, &mut self.ws, (&self.state.q, &self.state.v), &st.tau, s.gravity, &mut self.qdd);
+            if stage == 0 && !self.axes.is_smooth(m, &self.ws, s.h) {
+                return false;
+            }
+            coordinate_rates(m, &self.state.q, &self.state.v, &mut st.rates);
+            accumulate(&mut st.sum_q, &st.rates, weight);
+            accumulate(&mut st.sum_v, &self.qdd, weight);
+        }
+        for (x, (x0, sum)) in self.state.q.iter_mut().zip(st.start.q.iter().zip(&st.sum_q)) {
+            *x = x0 + s.h / 6.0 * sum;
+        }
+        for (x, (x0, sum)) in self.state.v.iter_mut().zip(st.start.v.iter().zip(&st.sum_v)) {
+            *x = x0 + s.h / 6.0 * sum;
+        }
+        normalize_all(m, &mut self.state.q);
+        self.state.read_angles(m);
+        if !self.axes.stayed_smooth(m, self.state.as_ref()) {
+            return false;
+        }
+        self.axes.finish_smooth(m, self.state.as_ref());
+        true
+    }
+}
+
+fn accumulate(sum: &mut [f64], x: &[f64], weight: f64) {
+    for (s, x) in sum.iter_mut().zip(x) {
+        *s += weight * x;
+    }
+}
+
+fn normalize_all(m: &Model, q: &mut [f64]) {
+    for b in &m.bodies[1..] {
+        match b.joint {
+            JointType::Spherical => normalize(&mut q[b.q..b.q + 4]),
+            JointType::Floating => normalize(&mut q[b.q + 3..b.q + 7]),
+            _ => {}
+        }
+    }
+}
+
+fn copy(to: &mut State, from: &State) {
+    to.q.copy_from_slice(&from.q);
+    to.v.copy_from_slice(&from.v);
+    to.angles.copy_from_slice(&from.angles);
+}

@@ -1,0 +1,312 @@
+//! Description + mass properties → Model.
+
+use super::{Axis, AxisKind, AxisSlot, Body, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model};
+use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind, Origin};
+use crate::mass::MassProperties;
+use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3};
+use nalgebra::{Rotation3, Translation3, UnitQuaternion};
+use std::collections::HashMap;
+
+/// How the root link is held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Base {
+    /// On a test stand.
+    #[default]
+    Fixed,
+    /// Six free degrees of freedom.
+    Free,
+}
+
+impl Model {
+    /// Builds the model of a checked description; `masses[i]` belongs to `links[i]`. `base_pose` places the root link
+    /// of a fixed base in the world; a free base starts where the state puts it.
+    /// Whether each axis carries inertia is checked by `dynamics::singular_axes`.
+    pub fn build(d: &Description, masses: &[MassProperties], base: Base, base_pose: Pose) -> Self {
+        let mut b = Builder::new(d, masses, base);
+        b.attach_root(base_pose);
+        let root = b.model.root_link;
+        b.descend(root);
+        b.collect_axes();
+        b.model
+    }
+}
+
+/// Where a link sits: on which body, and its frame in the body's frame.
+type Seat = (usize, Pose);
+
+struct Builder<'a> {
+    d: &'a Description,
+    masses: &'a [MassProperties],
+    link_index: HashMap<&'a str, usize>,
+    children: Vec<Vec<usize>>,
+    seats: Vec<Seat>,
+    slots: HashMap<usize, AxisSlot>,
+    model: Model,
+}
+
+impl<'a> Builder<'a> {
+    fn new(d: &'a Description, masses: &'a [MassProperties], base: Base) -> Self {
+        let link_index: HashMap<&str, usize> = d.links.iter().enumerate().map(|(i, l)| (l.name.as_str(), i)).collect();
+        let mut children = vec![vec![]; d.links.len()];
+        let mut has_parent = vec![false; d.links.len()];
+        for (k, j) in d.joints.iter().enumerate() {
+            children[link_index[j.parent.as_str()]].push(k);
+            has_parent[link_index[j.child.as_str()]] = true;
+        }
+        let root_link = has_parent.iter().position(|p| !p).unwrap_or(0);
+        let model = Model {
+            name: d.name.clone(),
+            axes: vec![],
+            links: vec![],
+            bodies: vec![],
+            eulers: vec![],
+            base,
+            root_link,
+            nq: 0,
+            nv: 0,
+            balls: 0,
+            effects: Effects::called_for(&[], &[world()]),
+        };
+        let seats = vec![(0, Pose::identity()); d.links.len()];
+        Self { d, masses, link_index, children, seats, slots: HashMap::new(), model }
+    }
+
+    fn attach_root(&mut self, base_pose: Pose) {
+        let (d, masses) = (self.d, self.masses);
+        self.model.bodies.push(world());
+        self.model.links = (d.links.iter().zip(masses))
+            .map(|(l, m)| LinkInfo {
+                name: l.name.clone(),
+                parent: None,
+                fixed: false,
+                monitor: l.monitor,
+                mass: m.mass,
+                frame: LinkFrame::OnBody { body: 0, offset: Pose::identity() },
+            })
+            .collect();
+        let root = self.model.root_link;
+        match self.model.base {
+            Base::Fixed => self.seat(root, (0, base_pose)),
+            Base::Free => {
+                let body = self.add_body(0, JointType::Floating, Pose::identity());
+                self.seat(root, (body, Pose::identity()));
+            }
+        }
+        self.model.links[root].fixed = self.model.base == Base::Fixed;
+    }
+
+    /// Depth first, so that the velocities of a limb are consecutive.
+    fn descend(&mut self, link: usize) {
+        for joint in self.children[link].clone() {
+            let end = self.attach(link, joint);
+            self.descend(end);
+        }
+    }
+
+    /// Attaches what hangs on a joint and returns the link at its end.
+    fn attach(&mut self, link: usize, joint: usize) -> usize {
+        match self.group_from(joint) {
+            Some((GroupKind::ThreeDof, joints)) => self.attach_spherical(link, &joints),
+            Some((GroupKind::Cardan, joints)) => self.attach_universal(link, &joints),
+            _ => self.attach_single(link, joint),
+        }
+    }
+
+    /// The joints of the 3DOF or cardan group that begins with this joint, if all its axes exist.
+    fn group_from(&self, joint: usize) -> Option<(GroupKind, Vec<usize>)> {
+        let name = Some(self.d.joints[joint].name.as_str());
+        let g = self.d.groups.iter().find(|g| g.h.as_deref() == name)?;
+        let wanted: &[&Option<String>] = match g.kind {
+            GroupKind::ThreeDof => &[&g.h, &g.p, &g.b],
+            GroupKind::Cardan => &[&g.h, &g.p],
+            GroupKind::CombinedHinge => return None,
+        };
+        let index = |n: &Option<String>| n.as_deref().and_then(|n| self.d.joints.iter().position(|j| j.name == n));
+        let joints: Option<Vec<usize>> = wanted.iter().map(|n| index(n)).collect();
+        joints.map(|j| (g.kind, j))
+    }
+
+    fn attach_single(&mut self, link: usize, index: usize) -> usize {
+        let j = &self.d.joints[index];
+        let child = self.link_index[j.child.as_str()];
+        let (body, offset) = self.seats[link];
+        let frame = offset * pose(&j.origin);
+        let joint = match j.kind {
+            JointKind::Fixed => {
+                self.hang(link, child, (body, frame));
+                self.model.links[child].fixed = true;
+                return child;
+            }
+            JointKind::Floating => JointType::Floating,
+            JointKind::Spherical => JointType::Spherical,
+            JointKind::Prismatic => JointType::Prismatic,
+            JointKind::Revolute | JointKind::Continuous | JointKind::Planar => JointType::Revolute,
+        };
+        let turn = if joint.nv() == 1 { along_z(Vec3::from(j.axis)) } else { Quat::identity() };
+        let new = self.add_body(body, joint, frame * turn);
+        if joint.nv() == 1 {
+            let b = &self.model.bodies[new];
+            self.slots.insert(index, AxisSlot::Scalar { q: b.q, v: b.v });
+        }
+        self.hang(link, child, (new, Pose::from_parts(Translation3::identity(), turn.inverse())));
+        child
+    }
+
+    /// H, P, B → one body with a quaternion.
+    fn attach_spherical(&mut self, link: usize, joints: &[usize]) -> usize {
+        let [h, p, b] = [0, 1, 2].map(|k| &self.d.joints[joints[k]]);
+        let (rp, rb) = (rotation(&p.origin), rotation(&b.origin));
+        let axes = [Vec3::from(h.axis), rp * Vec3::from(p.axis), rp * rb * Vec3::from(b.axis)];
+        let (frame, sense) = EulerFrame::frame(&axes);
+        let basis = quat(&frame);
+        let (parent, offset) = self.seats[link];
+        let body = self.add_body(parent, JointType::Spherical, offset * pose(&h.origin) * basis);
+        let (q, v) = (self.model.bodies[body].q, self.model.bodies[body].v);
+        let group = self.model.eulers.len();
+        self.model.eulers.push(EulerFrame { body, q, v, sense });
+        for (angle, joint) in joints.iter().enumerate() {
+            self.slots.insert(*joint, AxisSlot::Euler { group, angle });
+        }
+        let back = basis.inverse();
+        let ends = [back, back * rp, back * rp * rb];
+        self.hang_group(link, body, &[h, p, b], &ends)
+    }
+
+    /// H, P → one body with two angles.
+    fn attach_universal(&mut self, link: usize, joints: &[usize]) -> usize {
+        let [h, p] = [0, 1].map(|k| &self.d.joints[joints[k]]);
+        let rp = rotation(&p.origin);
+        let (x, z) = (Vec3::from(h.axis), rp * Vec3::from(p.axis));
+        let basis = quat(&Mat3::from_columns(&[x, z.cross(&x), z]));
+        let (parent, offset) = self.seats[link];
+        let body = self.add_body(parent, JointType::Universal, offset * pose(&h.origin) * basis);
+        let (q, v) = (self.model.bodies[body].q, self.model.bodies[body].v);
+        self.slots.insert(joints[0], AxisSlot::Scalar { q, v });
+        self.slots.insert(joints[1], AxisSlot::Scalar { q: q + 1, v: v + 1 });
+        let back = basis.inverse();
+        self.hang_group(link, body, &[h, p], &[back, back * rp])
+    }
+
+    /// Seats the links of a group: those inside move with a part of the turns, the last one is the body's.
+    fn hang_group(&mut self, link: usize, body: usize, joints: &[&Joint], ends: &[Quat]) -> usize {
+        let mut parent = link;
+        for (k, (joint, end)) in joints.iter().zip(ends).enumerate() {
+            let child = self.link_index[joint.child.as_str()];
+            let offset = Pose::from_parts(Translation3::identity(), *end);
+            if k + 1 == joints.len() {
+                self.hang(parent, child, (body, offset));
+            } else {
+                self.model.links[child].parent = Some(parent);
+                self.model.links[child].frame = LinkFrame::InGroup { body, turns: k + 1, offset };
+            }
+            parent = child;
+        }
+        parent
+    }
+
+    fn hang(&mut self, parent: usize, child: usize, seat: Seat) {
+        self.model.links[child].parent = Some(parent);
+        self.seat(child, seat);
+    }
+
+    /// Puts a link on a body and adds its inertia there (J-6: sum with parallel axes and rotated tensors).
+    fn seat(&mut self, link: usize, (body, offset): Seat) {
+        self.seats[link] = (body, offset);
+        self.model.links[link].frame = LinkFrame::OnBody { body, offset };
+        let m = &self.masses[link];
+        let r = offset.rotation.to_rotation_matrix();
+        let c = offset * nalgebra::Point3::from(m.center);
+        let (c, i) = (c.coords, r.matrix() * m.inertia * r.matrix().transpose());
+        let about_origin = i + m.mass * (Mat3::identity() * c.norm_squared() - c * c.transpose());
+        let b = &mut self.model.bodies[body];
+        b.mass += m.mass;
+        b.mc += V3::from(c * m.mass);
+        b.inertia += S3::from(about_origin);
+    }
+
+    fn add_body(&mut self, parent: usize, joint: JointType, tree: Pose) -> usize {
+        let m = &mut self.model;
+        m.bodies.push(Body {
+            parent,
+            joint,
+            q: m.nq,
+            v: m.nv,
+            ball: m.balls,
+            tree_r: M3::from(*tree.rotation.to_rotation_matrix().matrix()),
+            tree_p: V3::from(tree.translation.vector),
+            ..world()
+        });
+        m.nq += joint.nq();
+        m.nv += joint.nv();
+        m.balls += usize::from(joint == JointType::Spherical);
+        m.bodies.len() - 1
+    }
+
+    fn collect_axes(&mut self) {
+        for (k, j) in self.d.joints.iter().enumerate() {
+            if let Some(slot) = self.slots.get(&k) {
+                self.model.axes.push(axis(j, *slot));
+            }
+        }
+        self.model.effects = Effects::called_for(&self.model.axes, &self.model.bodies);
+    }
+}
+
+fn axis(j: &Joint, slot: AxisSlot) -> Axis {
+    let limited = matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
+    let limit = j.limit.as_ref();
+    let range = limit.filter(|_| limited);
+    let drive = j.drive.as_ref();
+    let no_load_speed = drive.and_then(|d| d.no_load_speed).unwrap_or(f64::INFINITY);
+    let velocity = limit.and_then(|l| l.velocity).unwrap_or(f64::INFINITY);
+    Axis {
+        name: j.name.clone(),
+        kind: if j.kind == JointKind::Prismatic { AxisKind::Linear } else { AxisKind::Rotary },
+        slot,
+        lower: range.map_or(f64::NEG_INFINITY, |l| l.lower),
+        upper: range.map_or(f64::INFINITY, |l| l.upper),
+        max_torque: (drive.and_then(|d| d.max_torque)).or(limit.and_then(|l| l.effort)).unwrap_or(f64::INFINITY),
+        no_load_speed,
+        max_speed: no_load_speed.min(velocity),
+        damping: j.damping,
+        friction: j.friction,
+        mode: drive.map_or(DriveMode::Idle, |d: &Drive| d.mode),
+        switchable: drive.is_none_or(|d| d.switchable),
+    }
+}
+
+fn world() -> Body {
+    Body {
+        parent: 0,
+        joint: JointType::Revolute,
+        q: 0,
+        v: 0,
+        ball: 0,
+        tree_r: M3::identity(),
+        tree_p: V3::default(),
+        mass: 0.0,
+        mc: V3::default(),
+        inertia: S3::default(),
+    }
+}
+
+fn rotation(o: &Origin) -> Quat {
+    UnitQuaternion::from_euler_angles(o.rpy[0], o.rpy[1], o.rpy[2])
+}
+
+fn pose(o: &Origin) -> Pose {
+    Pose::from_parts(Translation3::new(o.xyz[0], o.xyz[1], o.xyz[2]), rotation(o))
+}
+
+fn quat(m: &Mat3) -> Quat {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*m))
+}
+
+/// A rotation that carries z to the axis; for the coordinate axes a permutation of axes, without rounding.
+fn along_z(axis: Vec3) -> Quat {
+    let k = axis.iamin();
+    let mut side = Vec3::zeros();
+    side[k] = 1.0;
+    let x = side.cross(&axis).normalize();
+    quat(&Mat3::from_columns(&[x, axis.cross(&x), axis]))
+}

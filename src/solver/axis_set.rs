@@ -1,0 +1,321 @@
+//! All axes at once: which of them stand on a riser of their law, which slide on a flat.
+//!
+//! A standing axis is locked to the speed of its riser by the hybrid dynamics, exactly; a sliding one gets the torque of
+//! its flat. After each pass the axes whose reaction or speed does not fit move to the neighbouring part of their law. All
+//! that do not fit move at once while that helps; else only the last of them (block principal pivoting with Murty's rule
+//! as the fallback; Júdice and Pires 1994), which ends because the mass matrix is positive definite.
+
+use super::law::{LOWER, Law, UPPER, law};
+use super::{AxisCommand, AxisInput};
+use crate::dynamics::{BallLock, DofIn, Workspace, aba_hybrid};
+use crate::math::V3;
+use crate::model::{Axis, AxisSlot, Effects, EulerRates, Model};
+
+/// Relative tolerance of the fit.
+const FIT: f64 = 1e-11;
+/// Passes that may move all axes at once without getting better.
+const PATIENCE: u32 = 3;
+
+/// What a solve came to.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Outcome {
+    /// Passes of the hybrid dynamics.
+    pub passes: u32,
+    /// Every axis fits its law.
+    pub settled: bool,
+}
+
+/// A state as the solver sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct StateRef<'a> {
+    /// Coordinates.
+    pub q: &'a [f64],
+    /// Velocities.
+    pub v: &'a [f64],
+    /// H, P, B of each 3DOF group.
+    pub angles: &'a [[f64; 3]],
+}
+
+/// Laws and places of all axes. Makes its memory once.
+#[derive(Clone, Debug)]
+pub struct AxisSet {
+    laws: Vec<Law>,
+    /// Per axis: 2 j on flat j, 2 k + 1 on riser k.
+    place: Vec<usize>,
+    /// Kinds of the riser an axis stood on at the end of the last step; 0 = it slid.
+    memory: Vec<u8>,
+    moves: Vec<isize>,
+    rates: Vec<EulerRates>,
+    speed: Vec<f64>,
+    /// Per axis: drive torque really applied.
+    pub effort: Vec<f64>,
+}
+
+impl AxisSet {
+    /// Room for this model.
+    pub fn new(model: &Model) -> Self {
+        let n = model.axes.len();
+        Self {
+            laws: vec![Law::default(); n],
+            place: vec![0; n],
+            memory: vec![0; n],
+            moves: vec![0; n],
+            rates: vec![EulerRates::default(); model.eulers.len()],
+            speed: vec![0.0; n],
+            effort: vec![0.0; n],
+        }
+    }
+
+    /// Forgets the last step.
+    pub fn reset(&mut self) {
+        self.memory.fill(0);
+        self.effort.fill(0.0);
+    }
+
+    /// Sets up the laws of a step of `h` seconds and the first guess of each axis' place. True if a 3DOF group is at its
+    /// pole.
+    pub fn prepare(&mut self, m: &Model, s: StateRef, commands: &[AxisCommand], effects: Effects, h: f64) -> bool {
+        let at_pole = self.update_rates(m, s);
+        for (i, axis) in m.axes.iter().enumerate() {
+            let (q, v) = self.axis_state(m, axis, s);
+            let input = AxisInput { axis, command: commands[i], q, v };
+            self.speed[i] = v;
+            self.laws[i] = if self.ungraspable(axis) { Law::default() } else { law(&input, effects, h) };
+            self.place[i] = self.laws[i].guess(v, self.memory[i]);
+        }
+        at_pole
+    }
+
+    /// At the pole of a group, H has no torque of its own: it turns about the same line as B.
+    fn ungraspable(&self, axis: &Axis) -> bool {
+        matches!(axis.slot, AxisSlot::Euler { group, angle: 0 } if self.rates[group].at_pole)
+    }
+
+    fn axis_state(&self, m: &Model, axis: &Axis, s: StateRef) -> (f64, f64) {
+        match axis.slot {
+            AxisSlot::Scalar { q, v } => (s.q[q], s.v[v]),
+            AxisSlot::Euler { group, angle } => {
+                let at = m.eulers[group].v;
+                let w = V3::new(s.v[at], s.v[at + 1], s.v[at + 2]);
+                (s.angles[group][angle], self.rates[group].gradient[angle].dot(w))
+            }
+        }
+    }
+
+    /// Accelerations of an implicit step of `h` seconds after [`AxisSet::prepare`], in at most `passes` passes.
+    pub fn solve(
+        &mut self,
+        m: &Model,
+        ws: &mut Workspace<f64>,
+        s: StateRef,
+        (gravity, h, passes): ([f64; 3], f64, u32),
+        qdd: &mut [f64],
+    ) -> Outcome {
+        let (mut best, mut patience, mut done) = (usize::MAX, PATIENCE, 0);
+        loop {
+            self.write_inputs(m, ws, h);
+            aba_hybrid(m, ws, (s.q, s.v), gravity, qdd);
+            done += 1;
+            let misfits = self.misfits(m, ws, (h, qdd));
+            if misfits == 0 || done >= passes.max(1) {
+                self.finish(m, ws, (h, qdd));
+                return Outcome { passes: done, settled: misfits == 0 };
+            }
+            if misfits < best {
+                (best, patience) = (misfits, PATIENCE);
+            } else {
+                patience = patience.saturating_sub(1);
+            }
+            self.apply(patience > 0);
+        }
+    }
+
+    /// True if no axis stands on a riser and no viscous term is stiffer than `1/h`: then the laws are smooth functions
+    /// of the state and an explicit method may take the step.
+    pub fn is_smooth(&self, m: &Model, ws: &Workspace<f64>, h: f64) -> bool {
+        (0..self.laws.len()).all(|i| {
+            let law = &self.laws[i];
+            self.place[i] % 2 == 0 && (law.slope == 0.0 || law.slope * h * ws.mobility(m, i) < 1.0)
+        })
+    }
+
+    /// True if after an explicit step every axis is still on the flat it was on, and inside its stops.
+    pub fn stayed_smooth(&mut self, m: &Model, s: StateRef) -> bool {
+        self.update_rates(m, s);
+        (0..self.laws.len()).all(|i| {
+            let (q, v) = self.axis_state(m, &m.axes[i], s);
+            let (law, axis) = (&self.laws[i], &m.axes[i]);
+            let inside = law.stopless() || (q > axis.lower && q < axis.upper);
+            inside && law.step_without_stops(self.place[i], v) == 0
+        })
+    }
+
+    /// Torques (nv) of the laws at a state, every axis on its flat.
+    pub fn smooth_torques(&mut self, m: &Model, s: StateRef, tau: &mut [f64]) {
+        self.update_rates(m, s);
+        tau.fill(0.0);
+        for (i, axis) in m.axes.iter().enumerate() {
+            let (_, v) = self.axis_state(m, axis, s);
+            let torque = self.laws[i].flat(self.place[i] / 2) - self.laws[i].slope * v;
+            match axis.slot {
+                AxisSlot::Scalar { v: k, .. } => tau[k] = torque,
+                AxisSlot::Euler { group, angle } => {
+                    let g = self.rates[group].gradient[angle] * torque;
+                    let at = m.eulers[group].v;
+                    tau[at] += g.x;
+                    tau[at + 1] += g.y;
+                    tau[at + 2] += g.z;
+                }
+            }
+        }
+    }
+
+    /// Ends an explicit step: remembers that every axis slides, writes the efforts.
+    pub fn finish_smooth(&mut self, m: &Model, s: StateRef) {
+        for (i, axis) in m.axes.iter().enumerate() {
+            let (_, v) = self.axis_state(m, axis, s);
+            self.memory[i] = 0;
+            self.effort[i] = self.laws[i].drive_torque(v, None);
+        }
+    }
+
+    fn update_rates(&mut self, m: &Model, s: StateRef) -> bool {
+        let mut at_pole = false;
+        for (rates, (group, angles)) in self.rates.iter_mut().zip(m.eulers.iter().zip(s.angles)) {
+            *rates = group.rates(*angles);
+            at_pole |= rates.at_pole;
+        }
+        at_pole
+    }
+
+    fn write_inputs(&self, m: &Model, ws: &mut Workspace<f64>, h: f64) {
+        for input in &mut ws.ball_in {
+            *input = Default::default();
+        }
+        for (i, axis) in m.axes.iter().enumerate() {
+            let (law, place, v) = (&self.laws[i], self.place[i], self.speed[i]);
+            let lock = (place % 2 == 1).then(|| (law.risers[place / 2].speed - v) / h);
+            let tau = if lock.is_none() { law.flat(place / 2) - law.slope * v } else { 0.0 };
+            match axis.slot {
+                AxisSlot::Scalar { v, .. } => {
+                    ws.dofs[v] = match lock {
+                        Some(a) => DofIn::locked(a),
+                        None if law.slope > 0.0 => DofIn::implicit(tau, law.slope * h),
+                        None => DofIn::free(tau),
+                    }
+                }
+                AxisSlot::Euler { group, angle } => {
+                    let g = self.rates[group].gradient[angle];
+                    let input = &mut ws.ball_in[m.bodies[m.eulers[group].body].ball];
+                    if let Some(acceleration) = lock {
+                        input.lock[input.locks] = BallLock { gradient: g, acceleration, reaction: 0.0 };
+                        input.locks += 1;
+                    } else {
+                        input.tau = g.mad(tau, input.tau);
+                        input.inertia.sub_outer(g * (-law.slope * h), g);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Speed at the end of the step, and the torque of the law (without slope) that goes with it where it is locked.
+    fn end(&self, m: &Model, ws: &Workspace<f64>, i: usize, (h, qdd): (f64, &[f64])) -> (f64, f64) {
+        let (law, place) = (&self.laws[i], self.place[i]);
+        let locked = place % 2 == 1;
+        match m.axes[i].slot {
+            AxisSlot::Scalar { v: k, .. } => {
+                let v = if locked { law.risers[place / 2].speed } else { self.speed[i] + h * qdd[k] };
+                (v, ws.reaction[k] + law.slope * v)
+            }
+            AxisSlot::Euler { group, angle } => {
+                let at = m.eulers[group].v;
+                let g = self.rates[group].gradient[angle];
+                let rate = g.dot(V3::new(qdd[at], qdd[at + 1], qdd[at + 2]));
+                let v = if locked { law.risers[place / 2].speed } else { self.speed[i] + h * rate };
+                (v, self.group_reaction(m, ws, i, group) + law.slope * v)
+            }
+        }
+    }
+
+    /// Locks stand in the order of the axes, so this axis' lock is counted by the locked ones before it.
+    fn group_reaction(&self, m: &Model, ws: &Workspace<f64>, i: usize, group: usize) -> f64 {
+        let same = |a: &Axis| matches!(a.slot, AxisSlot::Euler { group: g, .. } if g == group);
+        let before = (0..i).filter(|&k| same(&m.axes[k]) && self.place[k] % 2 == 1).count();
+        ws.ball_in[m.bodies[m.eulers[group].body].ball].lock[before.min(2)].reaction
+    }
+
+    /// Notes for every axis to which side it leaves its part of the law; returns how many do.
+    fn misfits(&mut self, m: &Model, ws: &Workspace<f64>, end: (f64, &[f64])) -> usize {
+        for i in 0..self.laws.len() {
+            self.moves[i] = 0;
+            if !self.laws[i].smooth() {
+                let (v, torque) = self.end(m, ws, i, end);
+                self.moves[i] = self.laws[i].step(self.place[i], v, torque);
+            }
+        }
+        self.moves.iter().filter(|s| **s != 0).count()
+    }
+
+    /// Moves all that do not fit, or only the last of them.
+    fn apply(&mut self, all: bool) {
+        for (place, step) in self.place.iter_mut().zip(&self.moves).rev() {
+            *place = place.saturating_add_signed(*step);
+            if !all && *step != 0 {
+                return;
+            }
+        }
+    }
+
+    /// Remembers the places and writes the efforts.
+    fn finish(&mut self, m: &Model, ws: &Workspace<f64>, end: (f64, &[f64])) {
+        for i in 0..self.laws.len() {
+            let (v, torque) = self.end(m, ws, i, end);
+            let law = &self.laws[i];
+            let riser = (self.place[i] % 2 == 1).then_some(self.place[i] / 2);
+            self.memory[i] = riser.map_or(0, |k| law.risers[k].kinds);
+            self.effort[i] = law.drive_torque(v, riser.map(|k| (k, torque)));
+        }
+    }
+}
+
+impl Law {
+    /// First place: the riser it stood on, else by its speed.
+    fn guess(&self, v: f64, memory: u8) -> usize {
+        let risers = &self.risers[..self.count];
+        if let Some(k) = risers.iter().position(|r| r.kinds & memory != 0) {
+            return 2 * k + 1;
+        }
+        if let Some(k) = risers.iter().position(|r| r.speed == v) {
+            return 2 * k + 1;
+        }
+        let flat = risers.iter().take_while(|r| r.speed < v).count();
+        match (flat, risers.first(), risers.last()) {
+            (0, Some(r), _) if r.left == f64::INFINITY => 1,
+            (n, _, Some(r)) if n == self.count && r.right == f64::NEG_INFINITY => 2 * n - 1,
+            (n, ..) => 2 * n,
+        }
+    }
+
+    /// [`Law::step`] of a flat at speed `v`, where stops are checked by position.
+    fn step_without_stops(&self, place: usize, v: f64) -> isize {
+        let k = place / 2;
+        let below = k > 0 && self.risers[k - 1].kinds & (LOWER | UPPER) == 0 && v <= self.risers[k - 1].speed;
+        let above = k < self.count && self.risers[k].kinds & (LOWER | UPPER) == 0 && v >= self.risers[k].speed;
+        isize::from(above) - isize::from(below)
+    }
+
+    /// To which side the solution leaves this part of the law: −1 left, 0 not at all, +1 right.
+    fn step(&self, place: usize, v: f64, torque: f64) -> isize {
+        let k = place / 2;
+        if place % 2 == 1 {
+            let r = &self.risers[k];
+            let slack = FIT * (1.0 + torque.abs());
+            return isize::from(torque < r.right - slack) - isize::from(torque > r.left + slack);
+        }
+        let slack = FIT * (1.0 + v.abs());
+        let below = k > 0 && v < self.risers[k - 1].speed - slack;
+        let above = k < self.count && v > self.risers[k].speed + slack;
+        isize::from(above) - isize::from(below)
+    }
+}
