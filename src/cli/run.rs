@@ -1,8 +1,9 @@
 //! `realnoid run`: the ROS 2 node.
 
 use super::load::{Loaded, load};
-use crate::description::Severity;
+use crate::description::{Severity, render};
 use crate::ros::{self, Environment, Robot, RosArgs};
+use std::io::IsTerminal;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -16,7 +17,7 @@ pub fn run(urdf: Option<&Path>, args: RosArgs) -> ExitCode {
         Ok(checked) => checked,
         Err(reason) => return fail(&reason, USAGE),
     };
-    let loaded = match load(urdf, values.base()).or_else(|_| stand_in(values.base())) {
+    let loaded = match load(urdf, values.base()).or_else(|_| stand_in(urdf, values.base())) {
         Ok(loaded) => loaded,
         Err(report) => return fail(&report, 1),
     };
@@ -38,48 +39,29 @@ fn fail(reason: &str, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
+/// Warnings, with their source lines; notes are for `realnoid check`.
 fn print_findings(loaded: &Loaded) {
-    for f in loaded.findings.iter().filter(|f| f.severity > Severity::Note) {
-        let (file, line, column) = (&loaded.description.file, f.at.line, f.at.column);
-        eprintln!("{file}:{line}:{column}: warning[{}]: {}: {} {}", f.code, f.element, f.message, f.mend);
+    let warnings: Vec<_> = loaded.findings.iter().filter(|f| f.severity > Severity::Note).cloned().collect();
+    if !warnings.is_empty() {
+        let d = &loaded.description;
+        eprint!("{}", render(&warnings, &d.file, &d.text, std::io::stderr().is_terminal()));
     }
 }
 
 /// Until `load` is real.
-fn stand_in(base: crate::model::Base) -> Result<Loaded, String> {
-    use crate::description::{Description, DriveMode, MonitorFrame};
-    use crate::model::{Axis, AxisKind, LinkInfo, Model};
-    let axis = |name: &str, switchable| Axis {
-        name: name.into(),
-        kind: AxisKind::Rotary,
-        lower: -1.0,
-        upper: 1.0,
-        max_torque: 10.0,
-        no_load_speed: 5.0,
-        mode: DriveMode::Idle,
-        switchable,
+fn stand_in(urdf: Option<&Path>, base: crate::model::Base) -> Result<Loaded, String> {
+    use crate::mass::MassProperties;
+    use crate::math::{Mat3, Pose, Vec3};
+    let path = urdf.unwrap_or(Path::new("tests/python/arm.urdf"));
+    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    let reading = crate::description::read(&text, &path.display().to_string());
+    let description = reading.description.ok_or("not sound")?;
+    let mass = |l: &crate::description::Link| {
+        let (mass, i, c) = l.inertial.as_ref().map_or((0.0, [0.0; 6], [0.0; 3]), |i| (i.mass, i.inertia, i.origin.xyz));
+        let inertia = Mat3::new(i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5]);
+        MassProperties { mass, center: Vec3::from(c), inertia }
     };
-    let link = |name: &str, parent, fixed, monitor| LinkInfo { name: name.into(), parent, fixed, monitor };
-    let model = Model {
-        name: "stand_in".into(),
-        axes: vec![axis("hip", true), axis("knee", true), Axis { mode: DriveMode::Torque, ..axis("ankle", false) }],
-        links: vec![
-            link("base", None, false, None),
-            link("thigh", Some(0), false, Some(MonitorFrame::Body)),
-            link("shank", Some(1), false, Some(MonitorFrame::World)),
-            link("foot-sole", Some(2), false, Some(MonitorFrame::World)),
-            link("toe", Some(3), true, None),
-        ],
-        base,
-    };
-    let description = Description {
-        name: "stand_in".into(),
-        file: "stand-in".into(),
-        text: "<robot name='stand_in'/>".into(),
-        links: vec![],
-        joints: vec![],
-        groups: vec![],
-        chains: vec![],
-    };
-    Ok(Loaded { description, model: model.into(), findings: vec![] })
+    let masses: Vec<_> = description.links.iter().map(mass).collect();
+    let model = crate::model::Model::build(&description, &masses, base, Pose::identity());
+    Ok(Loaded { description, model: model.into(), findings: reading.findings })
 }

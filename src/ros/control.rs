@@ -67,11 +67,12 @@ impl ControlLoop {
     fn take_inputs(&mut self) {
         if self.end.pace.update() {
             self.pace = *self.end.pace.output_buffer();
-            // Checked before it was sent; a refused setting leaves the present one in force.
+            // Checked before it was sent. Allocates if, and only if, the integrator changes.
             let _ = self.world.set_settings(self.pace.settings);
         }
         if self.end.commands.update() {
-            self.world.set_commands(self.end.commands.output_buffer());
+            // Checked before they were sent, too.
+            let _ = self.world.set_commands(self.end.commands.output_buffer());
         }
     }
 

@@ -175,25 +175,25 @@ impl CommandEnd {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::Description;
+    use crate::mass::MassProperties;
+    use crate::math::{Mat3, Pose, Vec3};
     use crate::model::{Base, Model};
 
+    /// Two links, one axis.
     fn world() -> World {
-        let nothing = Description {
-            name: "nothing".into(),
-            file: "".into(),
-            text: "".into(),
-            links: vec![],
-            joints: vec![],
-            groups: vec![],
-            chains: vec![],
-        };
-        World::new(Arc::new(Model::build(&nothing, Base::Fixed)), Settings::default()).unwrap()
+        let text = r#"<robot name="r"><link name="a"/>
+            <link name="b"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+            <joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>"#;
+        let description = crate::description::read(text, "r.urdf").description.unwrap();
+        let (none, one) = (Mat3::zeros(), Mat3::identity());
+        let masses = [(0.0, none), (1.0, one)].map(|(mass, inertia)| MassProperties { mass, center: Vec3::zeros(), inertia });
+        let model = Model::build(&description, &masses, Base::Fixed, Pose::identity());
+        World::new(Arc::new(model), Settings::default()).unwrap()
     }
 
     fn ends(world: &World) -> (ControlEnd, PublishEnd, CommandEnd) {
         let pace = Pace { settings: Settings::default(), real_time_factor: 1.0, max_catch_up: 100 };
-        exchange(world, &vec![], &pace, Arc::default()).unwrap()
+        exchange(world, &world.commands().to_vec(), &pace, Arc::default()).unwrap()
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::parameters::{ParameterServers, Values, declare, show};
 use super::publish::Outlet;
 use super::topics::{Topics, stream_qos};
 use super::clock;
-use crate::model::Model;
+use crate::model::{Base, Model};
 use crate::world::{AxisCommand, Mode, World};
 use futures::channel::oneshot;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
@@ -50,7 +50,7 @@ pub fn run(robot: &Robot, args: &RosArgs, mut values: Values, environment: &Envi
 
     let mut world = World::new(robot.model.clone(), values.pace().settings)?;
     let commands = initial_commands(&world, values.hold_at_start());
-    world.set_commands(&commands);
+    world.set_commands(&commands).map_err(|axis| format!("axis {axis} cannot be held at its initial position"))?;
 
     let context = context(environment)?;
     let mut node = create_node(&context, args, &values)?;
@@ -179,13 +179,14 @@ fn spawn(name: &str, run: impl FnOnce() + Send + 'static) -> Result<JoinHandle<(
 fn start_report(robot: &Robot, node: &Node, environment: &Environment, values: &Values, topics: &[String]) -> String {
     let model = &robot.model;
     let mut text = format!(
-        "{}: '{}' from {}\n  {} links, {} axes, base {:?}\n",
+        "{}: '{}' from {}\n  {} links, {} axes, {:.3} kg, base {}\n",
         node.fully_qualified_name(),
         model.name,
         robot.source,
         model.links.len(),
         model.axes.len(),
-        model.base,
+        model.links.iter().map(|l| l.mass).sum::<f64>(),
+        if model.base == Base::Fixed { "fixed" } else { "free" },
     );
     let settings = values.iter().filter(|(d, _)| d.name != "axes").map(|(d, v)| format!("{} {}", d.name, show(v)));
     text += &format!("  {}\n", settings.collect::<Vec<_>>().join(", "));

@@ -44,8 +44,7 @@ impl Values {
         }
         let value = widen(value, &definition.default);
         definition.check(&value)?;
-        self.values[index] = value;
-        Ok(())
+        self.replace(index, value)
     }
 
     /// Sets a parameter of a running node. `Err` says what is wrong with it; nothing has changed then.
@@ -57,8 +56,17 @@ impl Values {
             let when = definition.when_text();
             return Err(format!("parameter '{name}' cannot be set to {} now: {when}", super::show(&value)));
         }
-        self.values[index] = value;
-        Ok(())
+        self.replace(index, value)
+    }
+
+    /// The world has the last word on its settings.
+    fn replace(&mut self, index: usize, value: V) -> Result<(), String> {
+        let present = std::mem::replace(&mut self.values[index], value);
+        let checked = self.pace().settings.check();
+        if checked.is_err() {
+            self.values[index] = present;
+        }
+        checked
     }
 
     /// Fills in the read-only list of axes.
@@ -177,6 +185,8 @@ mod tests {
         assert!(reason.contains("NaN") && reason.contains("0.0 … 100.0"), "{reason}");
         let reason = values.set_running("gravity", V::DoubleArray(vec![0.0])).unwrap_err();
         assert!(reason.contains("3 finite numbers m/s^2"), "{reason}");
+        let reason = values.set_running("gravity", V::DoubleArray(vec![0.0, 0.0, 1e9])).unwrap_err();
+        assert!(reason.contains("gravity z") && reason.contains("1000"), "{reason}");
         assert!(values.set_running("nonsense", V::Integer(0)).unwrap_err().contains("there is no parameter"));
         assert_eq!(values.pace().settings, Settings::default());
     }
