@@ -133,10 +133,10 @@ class Probe:
 class Bench:
     """A simulator and a probe in a domain of their own, with the streams that most tests look at."""
 
-    def __init__(self, *arguments, namespace="", **options):
+    def __init__(self, *arguments, topic="joint_states", **options):
         self.domain = random.randint(0, 101)
         self.probe = Probe(self.domain)
-        self.states = self.probe.listen(JointState, f"{namespace}/joint_states")
+        self.states = self.probe.listen(JointState, topic)
         self.diagnostics = self.probe.listen(DiagnosticArray, "/diagnostics")
         self.log = self.probe.listen(Log, "/rosout", ROSOUT)
         self.simulator = Simulator(*arguments, domain=self.domain, **options)

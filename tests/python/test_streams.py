@@ -75,7 +75,8 @@ def test_tf_and_tf_static_as_a_second_dds_vendor_sees_them(bench):
     fixed = wait_until(static.take_all, what="/tf_static")[0].transforms
     assert {(t.header.frame_id, t.child_frame_id) for t in fixed} == {("world", "base"), ("foot-sole", "toe")}
     toe = next(t for t in fixed if t.child_frame_id == "toe").transform
-    assert (toe.translation.x, toe.translation.y, toe.translation.z) == (0.1, 0.0, -0.02)
+    for value, urdf in zip((toe.translation.x, toe.translation.y, toe.translation.z), (0.1, 0.0, -0.02)):
+        assert math.isclose(value, urdf, abs_tol=1e-12)
     messages = []
     wait_until(lambda: messages.extend(moving.take_all()) or len(messages) > 20, what="/tf")
     edges = {(t.header.frame_id, t.child_frame_id) for t in messages[0].transforms}

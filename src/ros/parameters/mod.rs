@@ -5,7 +5,7 @@ mod table;
 mod values;
 
 pub use services::{Applied, ParameterServers, declare};
-pub use table::{Definition, Range, When, help, table};
+pub use table::{Definition, Range, When, default_yaml, help, table};
 pub use values::Values;
 
 use ros2_client::ParameterValue;

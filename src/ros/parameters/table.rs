@@ -183,3 +183,39 @@ pub fn help() -> String {
     }
     text
 }
+
+/// `config/default.yaml`: every parameter that can be set, with its default and a comment.
+pub fn default_yaml() -> String {
+    let mut text = String::from(
+        "# Every parameter of realnoid with its default. Copy, change, and start with\n\
+         #   realnoid run --ros-args --params-file my.yaml\n\
+         # or set one on the command line: --ros-args -p time_scale:=0.5\n\
+         /**:\n  ros__parameters:\n",
+    );
+    for d in table().iter().filter(|d| d.when != When::Never) {
+        let facts = [d.range_text(), d.when_text().into()];
+        let facts: Vec<_> = facts.into_iter().filter(|s: &String| !s.is_empty()).collect();
+        let facts = if facts.is_empty() { String::new() } else { format!(" [{}]", facts.join("; ")) };
+        text += &format!("    # {}{facts}\n    {}: {}\n", d.doc, d.name, show(&d.default));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_default_file_is_the_table() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/config/default.yaml");
+        let file = std::fs::read_to_string(path).unwrap();
+        let mend = "write what ros::parameters::default_yaml gives into config/default.yaml";
+        assert!(file == super::default_yaml(), "{mend}:\n{}", super::default_yaml());
+    }
+
+    #[test]
+    fn help_names_every_parameter() {
+        let help = super::help();
+        for d in super::table() {
+            assert!(help.contains(d.name) && help.contains(d.doc) && !d.doc.is_empty(), "{}", d.name);
+        }
+    }
+}
