@@ -13,10 +13,14 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 
+def wait_for_node(probe, name, namespace):
+    wait_until(lambda: (name, namespace) in probe.node.get_node_names_and_namespaces(), what=f"node {name}")
+
+
 def test_a_namespace_moves_all_but_what_ros_has_absolute(start):
     bench = start("-r", "__ns:=/bench", topic="/bench/joint_states")
     probe = bench.probe
-    assert ("forward_dynamics", "/bench") in probe.node.get_node_names_and_namespaces()
+    wait_for_node(probe, "forward_dynamics", "/bench")
     for kind, topic in [(TwistStamped, "/bench/twist/thigh"), (Clock, "/clock")]:
         messages = probe.listen(kind, topic)
         wait_until(lambda: messages, what=topic)
@@ -30,7 +34,7 @@ def test_a_namespace_moves_all_but_what_ros_has_absolute(start):
 
 def test_node_and_topic_remaps(start):
     bench = start("-r", "__node:=stand_in", "-r", "joint_states:=robot/joints", topic="robot/joints")
-    assert ("stand_in", "/") in bench.probe.node.get_node_names_and_namespaces()
+    wait_for_node(bench.probe, "stand_in", "/")
     names = dict(bench.probe.node.get_topic_names_and_types())
     assert "/robot/joints" in names and bench.probe.node.count_publishers("/joint_states") == 0
     assert bench.probe.get(bench.probe.parameters("stand_in"), "engine") == "rbx"
