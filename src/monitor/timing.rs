@@ -37,9 +37,8 @@ pub struct Percentiles {
 impl Timing {
     /// Empty histograms at their final size. `Err` only if the constants of this file contradict each other.
     pub fn new() -> Result<Self, String> {
-        let empty = || {
-            Histogram::new_with_bounds(RANGE_NS.0, RANGE_NS.1, SIGNIFICANT_DIGITS).map_err(|e| e.to_string())
-        };
+        let empty =
+            || Histogram::new_with_bounds(RANGE_NS.0, RANGE_NS.1, SIGNIFICANT_DIGITS).map_err(|e| e.to_string());
         Ok(Self { lateness: empty()?, step: empty()?, intervals: 0, overruns: 0, rebases: 0, lost_ns: 0 })
     }
 

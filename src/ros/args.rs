@@ -2,8 +2,8 @@
 
 use super::log::Severity;
 use super::names::Remap;
-use super::params_file;
 use super::parameters::Values;
+use super::params_file;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -69,9 +69,9 @@ impl RosArgs {
     /// Reads the arguments after `--ros-args` (which may itself be the first). `Err` names the argument and the mend.
     pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, String> {
         let mut args = Self::default();
-        let mut rest = arguments.into_iter().map(|a| {
-            a.into_string().map_err(|a| format!("argument {} is not valid UTF-8", a.display()))
-        });
+        let mut rest = arguments
+            .into_iter()
+            .map(|a| a.into_string().map_err(|a| format!("argument {} is not valid UTF-8", a.display())));
         while let Some(argument) = rest.next() {
             let argument = argument?;
             let mut operand = || {
@@ -149,9 +149,8 @@ impl RosArgs {
 
     fn set_log_level(&mut self, written: &str) -> Result<(), String> {
         let (logger, level) = written.split_once(":=").unwrap_or(("", written));
-        let severity = Severity::parse(level).ok_or_else(|| {
-            format!("--log-level {written}: expected debug, info, warn, error or fatal")
-        })?;
+        let severity = Severity::parse(level)
+            .ok_or_else(|| format!("--log-level {written}: expected debug, info, warn, error or fatal"))?;
         if logger.is_empty() || logger.rsplit('.').next() == Some(&self.node) {
             self.log_level = severity;
         }
@@ -185,7 +184,8 @@ mod tests {
 
     #[test]
     fn name_namespace_remaps_and_level() {
-        let a = parse(&["-r", "__ns:=/bench", "-r", "__node:=fd", "-r", "joint_states:=foo", "--log-level", "warn"]).unwrap();
+        let a = parse(&["-r", "__ns:=/bench", "-r", "__node:=fd", "-r", "joint_states:=foo", "--log-level", "warn"])
+            .unwrap();
         assert_eq!((a.namespace.as_str(), a.node.as_str(), a.remaps.len()), ("/bench", "fd", 1));
         assert_eq!(a.log_level, Severity::Warn);
     }
@@ -198,7 +198,8 @@ mod tests {
 
     #[test]
     fn values_are_yaml() {
-        let a = parse(&["-p", "gravity:=[0, 0, -1.62]", "-p", "integrator:=rk4", "-p", "allow_mode_switch:=false"]).unwrap();
+        let a = parse(&["-p", "gravity:=[0, 0, -1.62]", "-p", "integrator:=rk4", "-p", "allow_mode_switch:=false"])
+            .unwrap();
         let (values, _) = a.values().unwrap();
         assert_eq!(*values.get("gravity").unwrap().1, V::DoubleArray(vec![0.0, 0.0, -1.62]));
         assert!(!values.allow_mode_switch());
@@ -213,7 +214,9 @@ mod tests {
         assert!(parse(&["-r", "__ns:=bench"]).unwrap_err().contains("must start with /"));
         assert!(parse(&["--log-level", "loud"]).unwrap_err().contains("expected debug"));
         let values = |argument| parse(&["-p", argument]).unwrap().values().unwrap_err();
-        assert!(values("steps_per_interval:=0").contains("-p steps_per_interval:=0: parameter 'steps_per_interval' = 0"));
+        assert!(
+            values("steps_per_interval:=0").contains("-p steps_per_interval:=0: parameter 'steps_per_interval' = 0")
+        );
         assert!(values("speed:=1").contains("there is no parameter 'speed'"));
         assert!(values("steps_per_interval:=abc").contains("is of type integer"));
     }

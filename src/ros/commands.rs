@@ -87,8 +87,7 @@ struct Axis {
 impl Rules {
     /// Rules for axes given as (name, may its mode be switched?), in the order of `Model::axes`.
     pub fn new<'a>(axes: impl IntoIterator<Item = (&'a str, bool)>, allow_mode_switch: bool) -> Self {
-        let axes: Vec<_> =
-            axes.into_iter().map(|(name, switchable)| Axis { name: name.into(), switchable }).collect();
+        let axes: Vec<_> = axes.into_iter().map(|(name, switchable)| Axis { name: name.into(), switchable }).collect();
         let by_name = axes.iter().enumerate().map(|(i, a)| (a.name.clone(), i)).collect();
         Self { axes, by_name, allow_mode_switch }
     }
@@ -132,7 +131,10 @@ fn named_axes(commands: &[AxisCommand], message: &JointState, rules: &Rules) -> 
     let mut named = vec![false; merged.len()];
     for (i, name) in message.name.iter().enumerate() {
         let Some(&index) = rules.by_name.get(name.as_str()) else {
-            return refuse(RefusalKind::UnknownName, format!("there is no axis '{name}' (parameter 'axes' lists them)"));
+            return refuse(
+                RefusalKind::UnknownName,
+                format!("there is no axis '{name}' (parameter 'axes' lists them)"),
+            );
         };
         if std::mem::replace(&mut named[index], true) {
             return refuse(RefusalKind::DuplicateName, format!("axis '{name}' is named twice"));
@@ -301,7 +303,10 @@ mod tests {
     #[test]
     fn sizes_must_fit() {
         let (kind, reason) = refused(Command::Effort(&[1.0]));
-        assert_eq!((kind, reason.as_str()), (RefusalKind::WrongSize, "1 values for 3 axes (their order is parameter 'axes')"));
+        assert_eq!(
+            (kind, reason.as_str()),
+            (RefusalKind::WrongSize, "1 values for 3 axes (their order is parameter 'axes')")
+        );
         assert_eq!(refused(Command::Joint(&joint(&["hip"], &[0.0, 1.0], &[], &[]))).0, RefusalKind::WrongSize);
         assert_eq!(refused(Command::Joint(&joint(&["hip"], &[], &[], &[]))).0, RefusalKind::Empty);
         assert_eq!(refused(Command::Joint(&joint(&[], &[], &[], &[]))).0, RefusalKind::Empty);
@@ -311,7 +316,10 @@ mod tests {
     fn values_must_be_finite() {
         for bad in [f64::NAN, f64::INFINITY] {
             assert_eq!(refused(Command::Servo(&[0.0, bad, 0.0])).0, RefusalKind::NotFinite);
-            assert_eq!(refused(Command::Joint(&joint(&["hip", "knee"], &[], &[], &[1.0, bad]))).0, RefusalKind::NotFinite);
+            assert_eq!(
+                refused(Command::Joint(&joint(&["hip", "knee"], &[], &[], &[1.0, bad]))).0,
+                RefusalKind::NotFinite
+            );
         }
     }
 
@@ -320,7 +328,10 @@ mod tests {
         let (kind, reason) = refused(Command::Joint(&joint(&["hip", "elbow"], &[0.0, 0.0], &[], &[])));
         assert_eq!(kind, RefusalKind::UnknownName);
         assert!(reason.contains("'elbow'"), "{reason}");
-        assert_eq!(refused(Command::Joint(&joint(&["hip", "hip"], &[0.0, 0.0], &[], &[]))).0, RefusalKind::DuplicateName);
+        assert_eq!(
+            refused(Command::Joint(&joint(&["hip", "hip"], &[0.0, 0.0], &[], &[]))).0,
+            RefusalKind::DuplicateName
+        );
     }
 
     #[test]

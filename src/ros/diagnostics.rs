@@ -58,6 +58,11 @@ impl Diagnostics {
         })
     }
 
+    /// Real time counts from now.
+    pub fn start(&mut self) {
+        (self.started, self.reported) = ((Instant::now(), 0), (Instant::now(), 0));
+    }
+
     /// Adds a timing record of the control thread.
     pub fn record(&mut self, timing: &Timing) {
         self.total.merge(timing);

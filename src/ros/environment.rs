@@ -48,18 +48,22 @@ impl Environment {
     fn from(variable: impl Fn(&str) -> Option<String>) -> Result<Self, String> {
         let set = |name| variable(name).filter(|text| !text.is_empty());
         let domain = set("ROS_DOMAIN_ID").map_or(Ok(0), |text| domain(&text))?;
-        let named_range = set("ROS_AUTOMATIC_DISCOVERY_RANGE").map_or(Ok(DiscoveryRange::Subnet), |text| range(&text))?;
+        let named_range =
+            set("ROS_AUTOMATIC_DISCOVERY_RANGE").map_or(Ok(DiscoveryRange::Subnet), |text| range(&text))?;
         let localhost_only = set("ROS_LOCALHOST_ONLY").map_or(Ok(false), |text| flag("ROS_LOCALHOST_ONLY", &text))?;
         let range = if localhost_only { DiscoveryRange::Localhost } else { named_range };
         let mut warnings = vec![];
         if domain > LAST_SAFE_DOMAIN {
-            warnings.push(format!("ROS_DOMAIN_ID={domain}: above {LAST_SAFE_DOMAIN}, other programs may use its ports"));
+            warnings
+                .push(format!("ROS_DOMAIN_ID={domain}: above {LAST_SAFE_DOMAIN}, other programs may use its ports"));
         }
         if set("ROS_STATIC_PEERS").is_some() {
             warnings.push("ROS_STATIC_PEERS is set; this node does not support it".into());
         }
         if let Some(rmw) = set("RMW_IMPLEMENTATION").filter(|rmw| !rmw.starts_with("rmw_fastrtps")) {
-            warnings.push(format!("RMW_IMPLEMENTATION={rmw}: topics work with any DDS, parameter services with rmw_fastrtps only"));
+            warnings.push(format!(
+                "RMW_IMPLEMENTATION={rmw}: topics work with any DDS, parameter services with rmw_fastrtps only"
+            ));
         }
         Ok(Self { domain, range, warnings })
     }
@@ -75,9 +79,7 @@ fn range(text: &str) -> Result<DiscoveryRange, String> {
         "OFF" => Ok(DiscoveryRange::Off),
         "LOCALHOST" => Ok(DiscoveryRange::Localhost),
         "SUBNET" | "SYSTEM_DEFAULT" => Ok(DiscoveryRange::Subnet),
-        _ => Err(format!(
-            "ROS_AUTOMATIC_DISCOVERY_RANGE='{text}' is none of OFF, LOCALHOST, SUBNET, SYSTEM_DEFAULT"
-        )),
+        _ => Err(format!("ROS_AUTOMATIC_DISCOVERY_RANGE='{text}' is none of OFF, LOCALHOST, SUBNET, SYSTEM_DEFAULT")),
     }
 }
 

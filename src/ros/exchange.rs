@@ -186,7 +186,8 @@ mod tests {
             <joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>"#;
         let description = crate::description::read(text, "r.urdf").description.unwrap();
         let (none, one) = (Mat3::zeros(), Mat3::identity());
-        let masses = [(0.0, none), (1.0, one)].map(|(mass, inertia)| MassProperties { mass, center: Vec3::zeros(), inertia });
+        let masses =
+            [(0.0, none), (1.0, one)].map(|(mass, inertia)| MassProperties { mass, center: Vec3::zeros(), inertia });
         let model = Model::build(&description, &masses, Base::Fixed, Pose::identity());
         World::new(Arc::new(model), Settings::default()).unwrap()
     }

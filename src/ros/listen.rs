@@ -54,7 +54,19 @@ impl Live {
     }
 }
 
-/// Everything the listening thread owns.
+/// What the listening thread decides about; it outlives a connection.
+pub struct Desk {
+    /// Commands in force, of all axes.
+    pub commands: Vec<AxisCommand>,
+    /// Parameters in force.
+    pub values: Values,
+    /// To the control thread.
+    pub end: CommandEnd,
+    /// To the publishing thread.
+    pub live: Arc<Live>,
+}
+
+/// What the listening thread needs of one connection.
 pub struct Listener {
     /// Subscriptions.
     pub topics: CommandTopics,
@@ -62,16 +74,6 @@ pub struct Listener {
     pub servers: ParameterServers,
     /// For `/parameter_events`.
     pub node: Arc<Node>,
-    /// The model.
-    pub model: Arc<Model>,
-    /// Commands of all axes at start.
-    pub commands: Vec<AxisCommand>,
-    /// Parameters at start.
-    pub values: Values,
-    /// To the control thread.
-    pub end: CommandEnd,
-    /// To the publishing thread.
-    pub live: Arc<Live>,
     /// The log.
     pub log: Logger,
 }
@@ -85,17 +87,17 @@ struct Inbox<'a> {
 }
 
 impl Listener {
-    /// Serves until `stop` is sent or dropped.
-    pub fn run(self, stop: futures::channel::oneshot::Receiver<()>) {
-        let axes = self.model.axes.iter().map(|a| (a.name.as_str(), a.switchable));
+    /// Serves until `stop` is sent or dropped; gives back the desk with what has changed on it.
+    pub fn run(self, desk: Desk, model: &Model, stop: futures::channel::oneshot::Receiver<()>) -> Desk {
+        let axes = model.axes.iter().map(|a| (a.name.as_str(), a.switchable));
         let inbox = Inbox {
-            rules: RefCell::new(Rules::new(axes, self.values.allow_mode_switch())),
-            commands: RefCell::new(self.commands),
-            end: RefCell::new(self.end),
-            live: &self.live,
+            rules: RefCell::new(Rules::new(axes, desk.values.allow_mode_switch())),
+            commands: RefCell::new(desk.commands),
+            end: RefCell::new(desk.end),
+            live: &desk.live,
             log: &self.log,
         };
-        let values = RefCell::new(self.values);
+        let values = RefCell::new(desk.values);
         let applied = |values: &Values| inbox.take_parameters(values);
         let serve = async {
             futures::join!(
@@ -109,6 +111,8 @@ impl Listener {
             let _ = stop.await;
         };
         smol::block_on(smol::future::or(stop, serve));
+        let (commands, end) = (inbox.commands.into_inner(), inbox.end.into_inner());
+        Desk { commands, values: values.into_inner(), end, live: desk.live }
     }
 }
 

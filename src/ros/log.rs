@@ -144,7 +144,8 @@ fn publisher(node: &mut Node) -> Result<Publisher<Record>, String> {
         .history(History::KeepLast { depth: 1000 })
         .lifespan(Some(Duration::from_secs(10)));
     let name = Name::parse("/rosout").map_err(|e| e.to_string())?;
-    let topic = node.create_topic(&name, MessageTypeName::new("rcl_interfaces", "Log"), &qos).map_err(|e| e.to_string())?;
+    let topic =
+        node.create_topic(&name, MessageTypeName::new("rcl_interfaces", "Log"), &qos).map_err(|e| e.to_string())?;
     node.create_publisher(&topic, None).map_err(|e| format!("cannot publish {}: {e}", names::join("/", "rosout")))
 }
 
@@ -163,6 +164,11 @@ pub fn show_library_errors() {
 /// From now on, hides what RustDDS says when its sockets and threads are closed before its endpoints.
 pub fn leave() {
     LEAVING.store(true, Ordering::Relaxed);
+}
+
+/// Takes [`leave`] back.
+pub fn stay() {
+    LEAVING.store(false, Ordering::Relaxed);
 }
 
 fn harmless_at_exit(target: &str) -> bool {

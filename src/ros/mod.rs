@@ -1,11 +1,12 @@
 //! The ROS 2 node: the only room that knows ros2-client. Messages, parameters, topics, services; no physics.
 //!
 //! Three threads: the control loop (`control`) shares only the lock-free cells of `exchange` with the publishing thread
-//! (`publish`, the main thread) and the listening thread (`listen`: commands and parameters).
+//! (`publish_loop`, the main thread) and the listening thread (`listen`: commands and parameters).
 
 mod args;
 mod clock;
 mod commands;
+mod connection;
 mod control;
 mod counts;
 mod diagnostics;
@@ -19,6 +20,7 @@ mod node;
 pub mod parameters;
 mod params_file;
 mod publish;
+mod publish_loop;
 mod tf;
 mod topics;
 

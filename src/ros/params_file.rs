@@ -22,8 +22,15 @@ pub fn read(path: &Path, full_name: &str, values: &mut Values, warnings: &mut Ve
     apply(&path.display().to_string(), &text, full_name, values, warnings)
 }
 
-fn apply(file: &str, text: &str, full_name: &str, values: &mut Values, warnings: &mut Vec<String>) -> Result<(), String> {
-    let root: Spanned<Yaml> = serde_saphyr::from_str(text).map_err(|e| format!("{file}: {}", e.to_string().trim_end()))?;
+fn apply(
+    file: &str,
+    text: &str,
+    full_name: &str,
+    values: &mut Values,
+    warnings: &mut Vec<String>,
+) -> Result<(), String> {
+    let root: Spanned<Yaml> =
+        serde_saphyr::from_str(text).map_err(|e| format!("{file}: {}", e.to_string().trim_end()))?;
     let mut sections = vec![];
     collect_sections("", &root, file, &mut sections)?;
     for section in sections.iter().filter(|s| matches(&s.pattern, full_name)) {
@@ -32,7 +39,8 @@ fn apply(file: &str, text: &str, full_name: &str, values: &mut Values, warnings:
         for (name, node) in leaves {
             let at = |reason: String| format!("{file}:{}: {reason}", node.referenced.line());
             if section.pattern.contains('*') && values.get(&name).is_none() {
-                warnings.push(at(format!("parameter '{name}' in section '{}' is not one of this node's", section.pattern)));
+                warnings
+                    .push(at(format!("parameter '{name}' in section '{}' is not one of this node's", section.pattern)));
                 continue;
             }
             let value = node.value.to_value().map_err(|e| at(format!("parameter '{name}': {e}")))?;
@@ -136,16 +144,22 @@ impl Yaml {
 fn list(items: &[Yaml]) -> Result<V, String> {
     let all = |f: &dyn Fn(&Yaml) -> Option<V>| items.iter().all(|i| f(i).is_some());
     if all(&|y| matches!(y, Yaml::Integer(_)).then_some(V::NotSet)) {
-        return Ok(V::IntegerArray(items.iter().filter_map(|y| if let Yaml::Integer(i) = y { Some(*i) } else { None }).collect()));
+        return Ok(V::IntegerArray(
+            items.iter().filter_map(|y| if let Yaml::Integer(i) = y { Some(*i) } else { None }).collect(),
+        ));
     }
     if all(&|y| y.number().map(V::Double)) {
         return Ok(V::DoubleArray(items.iter().filter_map(Yaml::number).collect()));
     }
     if all(&|y| matches!(y, Yaml::Text(_)).then_some(V::NotSet)) {
-        return Ok(V::StringArray(items.iter().filter_map(|y| if let Yaml::Text(s) = y { Some(s.clone()) } else { None }).collect()));
+        return Ok(V::StringArray(
+            items.iter().filter_map(|y| if let Yaml::Text(s) = y { Some(s.clone()) } else { None }).collect(),
+        ));
     }
     if all(&|y| matches!(y, Yaml::Bool(_)).then_some(V::NotSet)) {
-        return Ok(V::BooleanArray(items.iter().filter_map(|y| if let Yaml::Bool(b) = y { Some(*b) } else { None }).collect()));
+        return Ok(V::BooleanArray(
+            items.iter().filter_map(|y| if let Yaml::Bool(b) = y { Some(*b) } else { None }).collect(),
+        ));
     }
     Err("a list must hold values of one type".into())
 }

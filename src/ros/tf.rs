@@ -70,7 +70,8 @@ mod tests {
     #[test]
     fn transforms_are_relative_to_the_parent_and_parted_by_motion() {
         let frame = |name: &str, parent, fixed| Frame { name: name.into(), parent, fixed };
-        let frames = Frames(vec![frame("root", None, true), frame("arm", Some(0), false), frame("tool", Some(1), true)]);
+        let frames =
+            Frames(vec![frame("root", None, true), frame("arm", Some(0), false), frame("tool", Some(1), true)]);
         let at = |x, turn| Pose::new(Vec3::new(x, 0.0, 0.0), Vec3::new(0.0, 0.0, turn));
         let quarter = std::f64::consts::FRAC_PI_2;
         let tool = at(1.0, quarter) * at(2.0, 0.0);

@@ -40,7 +40,12 @@ impl<'a> Topics<'a> {
     }
 
     /// Publishes messages of `kind` = `package/Type`.
-    pub fn publisher<M: Serialize>(&mut self, name: &str, kind: &str, qos: &QosProfile) -> Result<Publisher<M>, String> {
+    pub fn publisher<M: Serialize>(
+        &mut self,
+        name: &str,
+        kind: &str,
+        qos: &QosProfile,
+    ) -> Result<Publisher<M>, String> {
         let (name, kind_name) = self.resolve(name, kind)?;
         let topic = self.node.create_topic(&name, kind_name, qos).map_err(|e| failed(&name, &e))?;
         self.report.push(format!("-> {name}  {kind}"));
@@ -48,7 +53,12 @@ impl<'a> Topics<'a> {
     }
 
     /// Subscribes messages of `kind` = `package/Type`.
-    pub fn subscription<M: 'static>(&mut self, name: &str, kind: &str, qos: &QosProfile) -> Result<Subscription<M>, String> {
+    pub fn subscription<M: 'static>(
+        &mut self,
+        name: &str,
+        kind: &str,
+        qos: &QosProfile,
+    ) -> Result<Subscription<M>, String> {
         let (name, kind_name) = self.resolve(name, kind)?;
         let topic = self.node.create_topic(&name, kind_name, qos).map_err(|e| failed(&name, &e))?;
         self.report.push(format!("<- {name}  {kind}"));

@@ -1,6 +1,7 @@
 """Ten seconds at 1 ms: nothing lost, stamps on the grid; and what happens to a node that was held up (W-17)."""
 
 import re
+import signal
 import time
 
 from conftest import nanoseconds, wait_until
@@ -80,3 +81,15 @@ def test_time_stands_still_at_time_scale_0_and_clock_repeats(start):
     bench = start("-p", "time_scale:=0.0")
     wait_until(lambda: len(bench.states) > 50, what="states")
     assert {nanoseconds(s.header.stamp) for s in list(bench.states)} == {0}
+
+
+def test_a_stopped_and_continued_process_connects_again(bench):
+    """RustDDS ends its event loops when SIGSTOP interrupts them; Ctrl-Z and fg must not make the node mute."""
+    bench.simulator.process.send_signal(signal.SIGSTOP)
+    time.sleep(0.2)
+    bench.simulator.process.send_signal(signal.SIGCONT)
+    wait_until(lambda: bench.logged("connected to ROS again"), timeout=8, what="the new connection")
+    before = len(bench.states)
+    wait_until(lambda: len(bench.states) > before + 500, what="states")
+    client = bench.probe.parameters()
+    assert bench.probe.get(client, "engine") == "rbx"

@@ -64,10 +64,7 @@ pub struct Transform {
 impl From<Pose> for Transform {
     fn from(pose: Pose) -> Self {
         let q = pose.rotation.coords;
-        Self {
-            translation: pose.translation.vector.into(),
-            rotation: Quaternion { x: q.x, y: q.y, z: q.z, w: q.w },
-        }
+        Self { translation: pose.translation.vector.into(), rotation: Quaternion { x: q.x, y: q.y, z: q.z, w: q.w } }
     }
 }
 

@@ -68,9 +68,8 @@ where
     Q: Message + Clone + 'static,
     R: Message + 'static,
 {
-    let qos = QosProfile::publisher_default()
-        .reliability_reliable(WhenFull::Fail)
-        .history(History::KeepLast { depth: 1000 });
+    let qos =
+        QosProfile::publisher_default().reliability_reliable(WhenFull::Fail).history(History::KeepLast { depth: 1000 });
     let path = Name::new(&node.fully_qualified_name(), name).map_err(|e| e.to_string())?;
     let kind = ServiceTypeName::new("rcl_interfaces", kind);
     node.create_server(ServiceMapping::Enhanced, &path, &kind, qos.clone(), qos)

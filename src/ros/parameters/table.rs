@@ -59,8 +59,14 @@ fn world_parameters() -> Vec<Definition> {
     use When::Always;
     let s = Settings::default();
     vec![
-        define("control_interval", V::Double(s.control_interval_ns as f64 * 1e-9), Range::Double(1e-6, 1.0), "s", Always)
-            .doc("Simulated time between two states, before time_scale."),
+        define(
+            "control_interval",
+            V::Double(s.control_interval_ns as f64 * 1e-9),
+            Range::Double(1e-6, 1.0),
+            "s",
+            Always,
+        )
+        .doc("Simulated time between two states, before time_scale."),
         define("steps_per_interval", V::Integer(s.steps_per_interval.into()), Range::Integer(1, 1000), "", Always)
             .doc("Physics steps per control interval."),
         define("solver_iterations", V::Integer(s.solver_iterations.into()), Range::Integer(1, 10_000), "", Always)
@@ -100,10 +106,12 @@ fn loop_parameters() -> Vec<Definition> {
     vec![
         define("tf_rate", V::Double(50.0), Range::Double(0.0, 10_000.0), "Hz", Always)
             .doc("Rate of /tf in simulated time; 0: none."),
-        define("max_catch_up", V::Integer(100), Range::Integer(0, 1_000_000), "", Always)
-            .doc("Control intervals that a late loop catches up; beyond that the lost real time is given up and counted."),
-        define("real_time_factor", V::Double(1.0), Range::Double(0.0, 1000.0), "", Always)
-            .doc("Control intervals per control interval of real time; 0: as fast as possible, without dropping a state."),
+        define("max_catch_up", V::Integer(100), Range::Integer(0, 1_000_000), "", Always).doc(
+            "Control intervals that a late loop catches up; beyond that the lost real time is given up and counted.",
+        ),
+        define("real_time_factor", V::Double(1.0), Range::Double(0.0, 1000.0), "", Always).doc(
+            "Control intervals per control interval of real time; 0: as fast as possible, without dropping a state.",
+        ),
         define("realtime_priority", V::Integer(0), Range::Integer(0, 99), "", Start)
             .doc("SCHED_FIFO priority of the control thread; 0: ordinary scheduling."),
         define("use_sim_time", V::Boolean(false), Range::Any, "", Always)
@@ -171,14 +179,10 @@ impl Definition {
 pub fn help() -> String {
     let mut text = String::new();
     for d in table() {
-        let facts: Vec<String> = [
-            format!("default {}", show(&d.default)),
-            d.range_text(),
-            d.when_text().to_string(),
-        ]
-        .into_iter()
-        .filter(|s| !s.is_empty())
-        .collect();
+        let facts: Vec<String> = [format!("default {}", show(&d.default)), d.range_text(), d.when_text().to_string()]
+            .into_iter()
+            .filter(|s| !s.is_empty())
+            .collect();
         text += &format!("  {:<19} {}\n  {:<19} [{}]\n", d.name, d.doc, "", facts.join("; "));
     }
     text
