@@ -1,31 +1,27 @@
 //! `realnoid check`: every finding with its line and mend.
 
-use crate::description::{self, Severity};
+use super::load::examine;
+use crate::description::render;
+use crate::math::Pose;
+use crate::model::Base;
 use std::io::IsTerminal;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Prints every finding in the file to standard output; failure if one of them is an error, or if the file
-/// cannot be read.
+/// Prints every finding in the file (`None`: the embedded humanoid) to standard output; failure if one of them is an
+/// error, or if the file cannot be read.
 pub fn run(path: Option<&Path>) -> ExitCode {
-    let Some(path) = path else {
-        eprintln!("realnoid check: name a URDF file: realnoid check robot.urdf");
-        return ExitCode::FAILURE;
-    };
-    match read_text(path) {
-        Ok(text) => check(&text, &path.display().to_string()),
+    match examine(path, Base::Fixed, Pose::identity()) {
+        Ok(examined) => {
+            let findings = &examined.findings;
+            print!("{}", render(findings, &examined.file, &examined.text, std::io::stdout().is_terminal()));
+            if examined.is_sound() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+        }
         Err(message) => {
             eprintln!("realnoid check: {message}");
             ExitCode::FAILURE
         }
     }
-}
-
-/// The same for a text; `file` is its name in the report.
-pub fn check(text: &str, file: &str) -> ExitCode {
-    let findings = description::read(text, file).findings;
-    print!("{}", description::render(&findings, file, text, std::io::stdout().is_terminal()));
-    if findings.iter().any(|f| f.severity == Severity::Error) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
 /// The text of a URDF file; the error says which file and what to do.

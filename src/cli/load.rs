@@ -1,21 +1,115 @@
 //! URDF text → model, with every finding on the way.
 
-use crate::description::{Description, Finding};
-use crate::model::{Base, Model};
+use crate::description::{self, Description, Finding, Severity};
+use crate::dynamics::singular_axes;
+use crate::mass::{MassProperties, link_masses, with_inertials};
+use crate::math::Pose;
+use crate::model::{Base, LinkFrame, Model};
+use std::path::Path;
 use std::sync::Arc;
+
+/// The default humanoid.
+pub const EMBEDDED: &str = include_str!("../../urdf/origin.urdf");
+/// How it is called in messages.
+pub const EMBEDDED_NAME: &str = "urdf/origin.urdf";
 
 /// What loading gives.
 pub struct Loaded {
     /// What the text says.
     pub description: Description,
+    /// Mass properties per link.
+    pub masses: Vec<MassProperties>,
     /// What is simulated.
     pub model: Arc<Model>,
     /// Warnings and notes.
     pub findings: Vec<Finding>,
+    /// The text for other tools (`robot_description`): with an exact `<inertial>` where ours came from a tag.
+    pub published: String,
 }
 
-/// Loads a URDF from a file; `None` loads the embedded humanoid. `Err` carries the printable report.
-pub fn load(path: Option<&std::path::Path>, base: Base) -> Result<Loaded, String> {
-    let _ = (path, base);
-    Err("not yet".into())
+/// A text with all that could be found out about it.
+pub struct Examined {
+    /// File name for messages.
+    pub file: String,
+    /// The text.
+    pub text: String,
+    /// Everything found; the robot is loaded only if no error is among them.
+    pub findings: Vec<Finding>,
+    /// Present if nothing found is an error.
+    pub robot: Option<(Description, Vec<MassProperties>, Model)>,
+}
+
+impl Examined {
+    /// True if nothing found is an error.
+    pub fn is_sound(&self) -> bool {
+        self.robot.is_some()
+    }
+
+    /// Findings of at least this severity, for people.
+    pub fn report(&self, least: Severity, color: bool) -> String {
+        let shown: Vec<Finding> = self.findings.iter().filter(|f| f.severity >= least).cloned().collect();
+        if shown.is_empty() { String::new() } else { description::render(&shown, &self.file, &self.text, color) }
+    }
+}
+
+/// Loads a URDF from a file; `None` loads the embedded humanoid.
+///
+/// # Errors
+/// The printable report: every finding, or why the file could not be read.
+pub fn load(path: Option<&Path>, base: Base) -> Result<Loaded, String> {
+    load_at(path, base, Pose::identity())
+}
+
+/// As [`load`], with the root link of a fixed base at `base_pose` in the world.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_at(path: Option<&Path>, base: Base, base_pose: Pose) -> Result<Loaded, String> {
+    let examined = examine(path, base, base_pose)?;
+    let report = || examined.report(Severity::Warning, false);
+    let Some((description, masses, model)) = examined.robot else { return Err(report()) };
+    let published = with_inertials(&examined.text, &masses, &description);
+    Ok(Loaded { description, masses, model: Arc::new(model), findings: examined.findings, published })
+}
+
+/// Reads and checks a file, or the embedded humanoid, as far as it goes.
+///
+/// # Errors
+/// Why the file could not be read.
+pub fn examine(path: Option<&Path>, base: Base, base_pose: Pose) -> Result<Examined, String> {
+    let (file, text) = match path {
+        Some(path) => (path.display().to_string(), super::check::read_text(path)?),
+        None => (EMBEDDED_NAME.to_owned(), EMBEDDED.to_owned()),
+    };
+    let reading = description::read(&text, &file);
+    let mut findings = reading.findings;
+    let robot = reading.description.and_then(|d| {
+        let (masses, more) = link_masses(&d);
+        findings.extend(more);
+        if findings.iter().any(|f| f.severity == Severity::Error) {
+            return None;
+        }
+        let model = Model::build(&d, &masses, base, base_pose);
+        let singular = singular_axes(&model);
+        findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
+        singular.is_empty().then_some((d, masses, model))
+    });
+    Ok(Examined { file, text, findings, robot })
+}
+
+/// The joint that carries no inertia, found by the link on its body.
+fn singular_finding(d: &Description, m: &Model, body: usize) -> Finding {
+    let carried = |frame: &LinkFrame| matches!(frame, LinkFrame::OnBody { body: b, .. } if *b == body);
+    let link = m.links.iter().position(|l| carried(&l.frame) && l.parent.is_some());
+    let joint = link.and_then(|l| d.joints.iter().find(|j| j.child == m.links[l].name));
+    Finding {
+        severity: Severity::Error,
+        code: "no-inertia",
+        message: "what hangs on this joint has no inertia in a direction in which it moves: its acceleration would be \
+                  infinite"
+            .into(),
+        element: joint.map_or_else(|| format!("body {body}"), |j| format!("joint '{}'", j.name)),
+        at: joint.map_or(Default::default(), |j| j.at),
+        mend: "give the links behind it mass and inertia, or make the joint fixed".into(),
+    }
 }

@@ -1,5 +1,33 @@
 //! The command line, thin.
 
+pub mod args;
+pub mod bench;
 pub mod check;
+pub mod evaluate;
+pub mod inspect;
 pub mod load;
 pub mod run;
+pub mod scene;
+pub mod simulate;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Reads the command line and does what it says.
+pub fn main() -> ExitCode {
+    let (own, ros) = crate::ros::split_arguments(std::env::args_os());
+    let cli = Cli::parse_from(own);
+    match cli.command.unwrap_or(Command::Run { urdf: None }) {
+        Command::Run { urdf } => run::start(urdf.as_deref(), ros),
+        Command::Check { urdf } => check::run(urdf.as_deref()),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Bench(args) => bench::run(&args),
+        Command::Evaluate(args) => evaluate::run(&args),
+    }
+}
+
+fn base_by_name(name: &str) -> crate::model::Base {
+    if name == "free" { crate::model::Base::Free } else { crate::model::Base::Fixed }
+}

@@ -3,12 +3,21 @@
 use super::load::{Loaded, load};
 use crate::description::{Severity, render};
 use crate::ros::{self, Environment, Robot, RosArgs};
+use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::Path;
 use std::process::ExitCode;
 
 /// Exit code for a command line, parameter file or environment that makes no sense.
 const USAGE: u8 = 2;
+
+/// Parses the arguments that followed `--ros-args`, then as [`run`].
+pub fn start(urdf: Option<&Path>, ros_arguments: Vec<OsString>) -> ExitCode {
+    match RosArgs::parse(ros_arguments) {
+        Ok(args) => run(urdf, args),
+        Err(reason) => fail(&reason, USAGE),
+    }
+}
 
 /// Simulates `urdf` (`None`: the embedded humanoid) as a ROS 2 node until SIGINT or SIGTERM. Exit codes: 0 after a
 /// clean end, 1 if the robot cannot be loaded or ROS not be joined, 2 for wrong arguments, parameters or environment.
@@ -17,15 +26,18 @@ pub fn run(urdf: Option<&Path>, args: RosArgs) -> ExitCode {
         Ok(checked) => checked,
         Err(reason) => return fail(&reason, USAGE),
     };
-    let loaded = match load(urdf, values.base()).or_else(|_| stand_in(urdf, values.base())) {
+    let loaded = match load(urdf, values.base()) {
         Ok(loaded) => loaded,
-        Err(report) => return fail(&report, 1),
+        Err(report) => {
+            eprintln!("{}", report.trim_end());
+            return ExitCode::FAILURE;
+        }
     };
     warnings.iter().for_each(|w| eprintln!("warning: {w}"));
     print_findings(&loaded);
     let robot = Robot {
         source: loaded.description.file.to_string(),
-        urdf: loaded.description.text.clone(),
+        urdf: loaded.published.as_str().into(),
         model: loaded.model.clone(),
     };
     match ros::run(&robot, &args, values, &environment) {
@@ -46,22 +58,4 @@ fn print_findings(loaded: &Loaded) {
         let d = &loaded.description;
         eprint!("{}", render(&warnings, &d.file, &d.text, std::io::stderr().is_terminal()));
     }
-}
-
-/// Until `load` is real.
-fn stand_in(urdf: Option<&Path>, base: crate::model::Base) -> Result<Loaded, String> {
-    use crate::mass::MassProperties;
-    use crate::math::{Mat3, Pose, Vec3};
-    let path = urdf.unwrap_or(Path::new("tests/python/arm.urdf"));
-    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
-    let reading = crate::description::read(&text, &path.display().to_string());
-    let description = reading.description.ok_or("not sound")?;
-    let mass = |l: &crate::description::Link| {
-        let (mass, i, c) = l.inertial.as_ref().map_or((0.0, [0.0; 6], [0.0; 3]), |i| (i.mass, i.inertia, i.origin.xyz));
-        let inertia = Mat3::new(i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5]);
-        MassProperties { mass, center: Vec3::from(c), inertia }
-    };
-    let masses: Vec<_> = description.links.iter().map(mass).collect();
-    let model = crate::model::Model::build(&description, &masses, base, Pose::identity());
-    Ok(Loaded { description, model: model.into(), findings: reading.findings })
 }

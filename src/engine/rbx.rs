@@ -66,6 +66,34 @@ impl State {
         }
     }
 
+    /// Acceleration of an axis, given those of the velocity coordinates (nv).
+    pub fn axis_acceleration(&self, m: &Model, axis: usize, vdot: &[f64]) -> f64 {
+        match m.axes[axis].slot {
+            AxisSlot::Scalar { v, .. } => vdot[v],
+            AxisSlot::Euler { group, angle } => {
+                let g = &m.eulers[group];
+                let rates = g.rates(self.angles[group]).gradient;
+                let w = self.group_velocity(m, group);
+                let turning = g.direction_rates(self.angles[group], rates.map(|r| r.dot(w)));
+                rates[angle].dot(V3::new(vdot[g.v], vdot[g.v + 1], vdot[g.v + 2]) - turning)
+            }
+        }
+    }
+
+    /// Adds a torque on an axis to the torques of the velocity coordinates (nv).
+    pub fn add_axis_torque(&self, m: &Model, axis: usize, torque: f64, tau: &mut [f64]) {
+        match m.axes[axis].slot {
+            AxisSlot::Scalar { v, .. } => tau[v] += torque,
+            AxisSlot::Euler { group, angle } => {
+                let g = &m.eulers[group];
+                let t = g.rates(self.angles[group]).gradient[angle] * torque;
+                for (to, from) in tau[g.v..g.v + 3].iter_mut().zip([t.x, t.y, t.z]) {
+                    *to += from;
+                }
+            }
+        }
+    }
+
     fn group_velocity(&self, m: &Model, group: usize) -> V3<f64> {
         let at = m.eulers[group].v;
         V3::new(self.v[at], self.v[at + 1], self.v[at + 2])

@@ -1,14 +1,23 @@
-//! Shape + specific gravity, or `<inertial>` → mass properties.
+//! Shape + specific gravity, or `<inertial>` → mass properties (B-2, B-3, B-10 … B-12, B-18).
+//!
+//! One file per family of shapes. A solid body is filled; a hollow one (2D dimension) is a wall of the given thickness
+//! on the shape's surface, thin against the shape: mass = density × area × thickness, as the source defines it.
 
-use crate::math::{Mat3, Vec3};
+mod capsule;
+mod cuboid;
+mod cylinder;
+mod ellipsoid;
+mod frustum;
+mod inertials;
+mod links;
+mod moments;
+mod of_shape;
+mod properties;
 
-/// Mass properties of a link in its own frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MassProperties {
-    /// kg.
-    pub mass: f64,
-    /// Centre of mass in the link frame, m.
-    pub center: Vec3,
-    /// Inertia about the centre of mass along the link's axes, kg·m².
-    pub inertia: Mat3,
-}
+pub use inertials::with_inertials;
+pub use links::link_masses;
+pub use of_shape::{Refusal, of_shape};
+pub use properties::{MassProperties, Principal};
+
+/// Density of a body of specific gravity 1, kg/m³.
+pub const WATER_DENSITY: f64 = 1000.0;

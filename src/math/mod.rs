@@ -1,5 +1,6 @@
 //! Aliases over nalgebra's f64 types, frames, and the kernel's own small types.
 
+pub mod frames;
 mod real;
 mod sincos;
 mod small;

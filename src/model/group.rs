@@ -89,6 +89,14 @@ impl EulerFrame {
         [V3::new(-sp, sf * cp, cf * cp), V3::new(0.0, cf, -sf), V3::new(self.sense, 0.0, 0.0)]
     }
 
+    /// `Ė ḣ`: the part of ω̇ that comes from the turning of the [`EulerFrame::directions`] at these rates.
+    pub fn direction_rates(&self, hpb: [f64; 3], rates: [f64; 3]) -> V3<f64> {
+        let ((sp, cp), (sf, cf)) = (sin_cos(hpb[1]), sin_cos(self.sense * hpb[2]));
+        let (h, p, f) = (rates[0], rates[1], self.sense * rates[2]);
+        let of_h = V3::new(-cp * p, cf * cp * f - sf * sp * p, -sf * cp * f - cf * sp * p);
+        of_h * h + V3::new(0.0, -sf * f, -cf * f) * p
+    }
+
     /// The frame F in the H joint's frame, and the sense of B about its x, from the axes of H, P, B at zero.
     pub fn frame(axes: &[Vec3; 3]) -> (Mat3, f64) {
         let x = axes[1].cross(&axes[0]);

@@ -1,1 +1,5 @@
-//! TODO room.
+//! What a run leaves on disk.
+
+mod csv;
+
+pub use csv::CsvWriter;

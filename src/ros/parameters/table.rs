@@ -177,7 +177,7 @@ impl Definition {
 
 /// The table as text for `--help`.
 pub fn help() -> String {
-    let mut text = String::new();
+    let mut text = String::from("Parameters (-p NAME:=VALUE after --ros-args):\n");
     for d in table() {
         let facts: Vec<String> = [format!("default {}", show(&d.default)), d.range_text(), d.when_text().to_string()]
             .into_iter()

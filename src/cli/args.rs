@@ -1,0 +1,176 @@
+//! Raw arguments, as they are typed, and how single values are read.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Forward dynamics of a life-size humanoid: a ROS 2 node in place of the robot, and tools around it.
+///
+/// Without a subcommand: `run`, the node. ROS arguments follow `--ros-args` (-p name:=value, -r from:=to,
+/// --params-file FILE).
+#[derive(Debug, Parser)]
+#[command(name = "realnoid", version, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    /// What to do; `run` if nothing is said.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// Subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// The ROS 2 node `forward_dynamics`: simulates in real time until SIGINT or SIGTERM.
+    #[command(after_long_help = crate::ros::parameters::help())]
+    Run {
+        /// URDF file; the embedded humanoid if none is given.
+        urdf: Option<PathBuf>,
+    },
+    /// Every finding in a URDF with line, column and mend; exit code 1 if one is an error.
+    Check {
+        /// URDF file; the embedded humanoid if none is given.
+        urdf: Option<PathBuf>,
+    },
+    /// Links, masses, inertias, axes, and the effects that the scene calls for.
+    Inspect(InspectArgs),
+    /// Simulates without ROS, as fast as it goes; a JSON summary to standard output.
+    Simulate(Box<SimulateArgs>),
+    /// Time per call of kinematics, rnea, crba, aba and step: medians, thread CPU time.
+    Bench(BenchArgs),
+    /// Forward dynamics of single states, to compare with other programs: one JSON object per line on standard input
+    /// {"position": [..], "velocity": [..], "effort": [..], "base_pose": [x,y,z,qx,qy,qz,qw], "base_twist": [w, v]}, per
+    /// axis in the order of the URDF; one line {"acceleration": [..], "base_acceleration": [..]} out for each.
+    Evaluate(EvaluateArgs),
+}
+
+/// `inspect`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// URDF file; the embedded humanoid if none is given.
+    pub urdf: Option<PathBuf>,
+    /// JSON instead of tables.
+    #[arg(long)]
+    pub json: bool,
+    /// fixed (on a test stand) or free.
+    #[arg(long, default_value = "fixed", value_parser = ["fixed", "free"])]
+    pub base: String,
+    /// The URDF with an exact <inertial> in every link whose mass comes from our tag, for tools that do not read it.
+    #[arg(long, conflicts_with = "json")]
+    pub urdf_with_inertials: bool,
+}
+
+/// `bench`.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// URDF file; the embedded humanoid if none is given.
+    pub urdf: Option<PathBuf>,
+    /// JSON instead of a table.
+    #[arg(long)]
+    pub json: bool,
+    /// fixed or free.
+    #[arg(long, default_value = "free", value_parser = ["fixed", "free"])]
+    pub base: String,
+    /// CPU time to spend per measured function, s.
+    #[arg(long, default_value_t = 0.5)]
+    pub seconds: f64,
+}
+
+/// `evaluate`.
+#[derive(Debug, Args)]
+pub struct EvaluateArgs {
+    /// URDF file.
+    pub urdf: PathBuf,
+    /// fixed or free.
+    #[arg(long, default_value = "fixed", value_parser = ["fixed", "free"])]
+    pub base: String,
+    /// m/s², world frame.
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,-9.80665", allow_hyphen_values = true)]
+    pub gravity: String,
+}
+
+/// `simulate`: the fixed contract of DESIGN §1.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// URDF file.
+    pub urdf: PathBuf,
+    /// World settings (YAML); flags win over it.
+    #[arg(long)]
+    pub scene: Option<PathBuf>,
+    /// Simulated time, s.
+    #[arg(long)]
+    pub duration: f64,
+    /// s; 0.001 unless the scene says otherwise.
+    #[arg(long)]
+    pub control_interval: Option<f64>,
+    /// Steps per control interval, 1 to 1000; 5 unless the scene says otherwise.
+    #[arg(long)]
+    pub steps: Option<u32>,
+    /// Solver iterations per step, 1 to 10000; 10 unless the scene says otherwise.
+    #[arg(long)]
+    pub iterations: Option<u32>,
+    /// semi_implicit_euler or rk4.
+    #[arg(long)]
+    pub integrator: Option<String>,
+    /// rbx.
+    #[arg(long)]
+    pub engine: Option<String>,
+    /// m/s², world frame; 0,0,-9.80665 unless the scene says otherwise.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub gravity: Option<String>,
+    /// Simulated time per control interval against the interval, 0 to 100.
+    #[arg(long)]
+    pub time_scale: Option<f64>,
+    /// fixed (on a test stand) or free.
+    #[arg(long, value_parser = ["fixed", "free"])]
+    pub base: Option<String>,
+    /// Initial position (rad or m) and speed of an axis.
+    #[arg(long, value_name = "AXIS=POSITION[,VELOCITY]")]
+    pub set: Vec<String>,
+    /// Root link in the world: position, m, and quaternion.
+    #[arg(long, value_name = "X,Y,Z,QX,QY,QZ,QW", allow_hyphen_values = true)]
+    pub base_pose: Option<String>,
+    /// Twist of a free base in the base frame, angular (rad/s) first.
+    #[arg(long, value_name = "WX,WY,WZ,VX,VY,VZ", allow_hyphen_values = true)]
+    pub base_twist: Option<String>,
+    /// Applied torque (N·m; N for a linear axis) during the whole run.
+    #[arg(long, value_name = "AXIS=TORQUE")]
+    pub effort: Vec<String>,
+    /// Servo target (rad; m for a linear axis) during the whole run.
+    #[arg(long, value_name = "AXIS=POSITION")]
+    pub servo: Vec<String>,
+    /// Time between two rows, s; the control interval if not given.
+    #[arg(long)]
+    pub every: Option<f64>,
+    /// Switch an effect off: gravity, damping, friction, limits, drives.
+    #[arg(long, value_name = "EFFECT")]
+    pub off: Vec<String>,
+    /// Switch an effect on.
+    #[arg(long, value_name = "EFFECT")]
+    pub on: Vec<String>,
+    /// Where the rows go: FILE.csv or FILE.mcap.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+}
+
+/// `N` numbers separated by commas.
+///
+/// # Errors
+/// Names the flag, the value, and the form it must have.
+pub fn numbers<const N: usize>(flag: &str, form: &str, text: &str) -> Result<[f64; N], String> {
+    let parts: Vec<f64> =
+        text.split(',').map_while(|p| p.trim().parse().ok().filter(|x: &f64| x.is_finite())).collect();
+    match parts.try_into() {
+        Ok(array) if text.split(',').count() == N => Ok(array),
+        _ => Err(format!("{flag} {text}: must be {N} finite numbers, {form}")),
+    }
+}
+
+/// `NAME=VALUE`, and the numbers of the value.
+///
+/// # Errors
+/// Names the flag and the form it must have.
+pub fn assignment<'a>(flag: &str, form: &str, text: &'a str) -> Result<(&'a str, Vec<f64>), String> {
+    let wrong = || format!("{flag} {text}: must be {form} with finite numbers");
+    let (name, value) = text.rsplit_once('=').ok_or_else(wrong)?;
+    let numbers: Result<Vec<f64>, _> = value.split(',').map(|p| p.trim().parse::<f64>()).collect();
+    let numbers = numbers.ok().filter(|n| n.iter().all(|x| x.is_finite())).ok_or_else(wrong)?;
+    Ok((name, numbers))
+}

@@ -1,0 +1,157 @@
+//! `realnoid bench`: what one call costs.
+
+use super::args::BenchArgs;
+use super::base_by_name;
+use super::load::load;
+use crate::dynamics::{Kinematics, Workspace, aba, aba_fused, crba, kinematics, rnea};
+use crate::engine::State;
+use crate::math::Vec3;
+use crate::model::{Base, Model};
+use crate::world::{AxisCommand, Integrator, Settings, World};
+use serde_json::json;
+use std::hint::black_box;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// Random states that the calls cycle through.
+const STATES: usize = 64;
+/// Calls between two readings of the clock.
+const BATCH: usize = 256;
+
+/// CPU time of this thread, s.
+pub fn cpu_seconds() -> f64 {
+    let t = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    t.tv_sec as f64 + t.tv_nsec as f64 * 1e-9
+}
+
+/// Measures and prints medians in µs per call.
+pub fn run(args: &BenchArgs) -> ExitCode {
+    let loaded = match load(args.urdf.as_deref(), base_by_name(&args.base)) {
+        Ok(loaded) => loaded,
+        Err(report) => {
+            eprint!("{report}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let m = &loaded.model;
+    let rows = measure(m, args.seconds.max(0.001));
+    if args.json {
+        let us: serde_json::Map<String, serde_json::Value> = rows
+            .iter()
+            .map(|r| (r.name.to_owned(), json!({"median": r.median, "low": r.low, "high": r.high})))
+            .collect();
+        println!(
+            "{:#}",
+            json!({"model": m.name, "base": args.base, "nv": m.nv, "axes": m.axes.len(), "us_per_call": us})
+        );
+    } else {
+        println!("{} ({} base, {} velocities), µs per call, thread CPU time", m.name, args.base, m.nv);
+        println!("{:<34} {:>10} {:>10} {:>10}", "", "median", "10 %", "90 %");
+        for r in &rows {
+            println!("{:<34} {:>10.3} {:>10.3} {:>10.3}", r.name, r.median, r.low, r.high);
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+struct Row {
+    name: &'static str,
+    median: f64,
+    low: f64,
+    high: f64,
+}
+
+/// States, torques and results that the measured calls share.
+struct Inputs {
+    states: Vec<State>,
+    tau: Vec<f64>,
+    out: Vec<f64>,
+    mass: Vec<f64>,
+    gravity: [f64; 3],
+}
+
+impl Inputs {
+    fn new(m: &Model) -> Self {
+        let mut seed = 1u64;
+        let mut random = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let states = (0..STATES).map(|_| random_state(m, &mut random)).collect();
+        let tau = (0..m.nv).map(|_| random()).collect();
+        let gravity = Settings::default().gravity;
+        Self { states, tau, out: vec![0.0; m.nv], mass: vec![0.0; m.nv * m.nv], gravity }
+    }
+}
+
+fn random_state(m: &Model, random: &mut impl FnMut() -> f64) -> State {
+    let mut s = State::initial(m);
+    if m.base == Base::Free {
+        let q = nalgebra::Vector4::from_fn(|_, _| random()).normalize();
+        s.set_base_pose(m, [random(), random(), random()], [q.x, q.y, q.z, q.w]);
+        let mut vector = || Vec3::new(random(), random(), random());
+        let (angular, linear) = (vector(), vector());
+        s.set_base_twist(m, angular, linear);
+    }
+    for axis in 0..m.axes.len() {
+        s.set_axis(m, axis, random(), random());
+    }
+    s
+}
+
+fn measure(m: &Arc<Model>, seconds: f64) -> Vec<Row> {
+    let mut i = Inputs::new(m);
+    let (mut ws, mut fused, mut kin) = (Workspace::new(m), Workspace::new(m), Kinematics::new(m));
+    let mut rows = vec![
+        timed("kinematics", seconds, |n| kinematics(m, &mut kin, &i.states[n].q, &i.states[n].v)),
+        timed("rnea", seconds, |n| {
+            rnea(m, &mut ws, (&i.states[n].q, &i.states[n].v), &i.tau, i.gravity, black_box(&mut i.out));
+        }),
+        timed("crba", seconds, |n| crba(m, &mut ws, &i.states[n].q, black_box(&mut i.mass))),
+        timed("aba", seconds, |n| {
+            aba(m, &mut ws, (&i.states[n].q, &i.states[n].v), &i.tau, i.gravity, black_box(&mut i.out));
+        }),
+    ];
+    if aba_fused(m, &mut fused, (&i.states[0].q, &i.states[0].v), &i.tau, i.gravity, &mut i.out) {
+        rows.push(timed("aba_fused", seconds, |n| {
+            let s = &i.states[n];
+            let _ = aba_fused(m, &mut fused, (&s.q, &s.v), &i.tau, i.gravity, black_box(&mut i.out));
+        }));
+    }
+    rows.push(step("step", m, (Integrator::SemiImplicitEuler, AxisCommand::IDLE), seconds));
+    rows.push(step("step_servos_hold", m, (Integrator::SemiImplicitEuler, AxisCommand::servo(0.0)), seconds));
+    rows.push(step("step_rk4", m, (Integrator::Rk4, AxisCommand::IDLE), seconds));
+    rows
+}
+
+/// A step of 1 ms from the initial state on; it starts anew after every batch, so that all batches do the same work.
+fn step(name: &'static str, m: &Arc<Model>, (integrator, command): (Integrator, AxisCommand), seconds: f64) -> Row {
+    let settings = Settings { integrator, steps_per_interval: 1, ..Settings::default() };
+    let Ok(fresh) = World::new(m.clone(), settings) else { return Row { name, median: 0.0, low: 0.0, high: 0.0 } };
+    let commands = vec![command; m.axes.len()];
+    let mut world = fresh.clone();
+    timed(name, seconds, |n| {
+        if n == 0 {
+            world = fresh.clone();
+            let _ = world.set_commands(&commands);
+        }
+        world.advance();
+    })
+}
+
+fn timed(name: &'static str, seconds: f64, mut call: impl FnMut(usize)) -> Row {
+    let mut times = vec![];
+    let mut spent = 0.0;
+    while spent < seconds || times.len() < 11 {
+        let start = cpu_seconds();
+        for n in 0..BATCH {
+            call(n % STATES);
+        }
+        let took = cpu_seconds() - start;
+        spent += took;
+        times.push(took * 1e6 / BATCH as f64);
+    }
+    times.sort_by(f64::total_cmp);
+    let at = |share: f64| times[((times.len() - 1) as f64 * share).round() as usize];
+    Row { name, median: at(0.5), low: at(0.1), high: at(0.9) }
+}
