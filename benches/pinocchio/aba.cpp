@@ -10,7 +10,7 @@
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 #include <pinocchio/multibody.hpp>
-#include <pinocchio/parsers/urdf.hpp>
+#include <pinocchio/serialization.hpp>
 
 namespace pin = pinocchio;
 
@@ -39,12 +39,12 @@ double MedianMicroseconds(double seconds, Call call) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: aba FILE.urdf [seconds per function]\n";
+    std::cerr << "usage: aba MODEL.xml [seconds per function]\n";
     return 2;
   }
   const double seconds = argc > 2 ? std::atof(argv[2]) : 0.5;
   pin::Model model;
-  pin::urdf::buildModel(argv[1], pin::JointModelFreeFlyer(), model);
+  model.loadFromXML(argv[1], "model");
   pin::Data data(model);
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
