@@ -1,9 +1,10 @@
 //! Elliptic frustum; an elliptic cone is one whose top section has shrunk to a point.
 //!
 //! Derivation: the section at u = 0 … 1 of the height is an ellipse of semi-axes a·s, b·s with
-//! s = s₀ + (s₁ − s₀)u. Its area is πab·s² and its mean square of x is a²s²/4, so that the volume needs ∫s² du, the mean square of x
-//! ∫s⁴ du, and the height ∫u s² du and ∫u² s² du: polynomials in s₀ and s₁. On the mantle the surface element is
-//! s·g(φ) du dφ with g² = L²(b²cos²φ + a²sin²φ) + (ab(s₁ − s₀))², so that height and circumference separate too.
+//! s = s₀ + (s₁ − s₀)u. Its area is πab·s² and its mean square of x is a²s²/4, so that the volume needs ∫s² du, the
+//! mean square of x ∫s⁴ du, and the height ∫u s² du and ∫u² s² du: polynomials in s₀ and s₁. On the mantle the surface
+//! element is s·g(φ) du dφ with g² = L²(b²cos²φ + a²sin²φ) + (ab(s₁ − s₀))², so that height and circumference
+//! separate too.
 
 use super::moments::Moments;
 use std::f64::consts::{PI, TAU};

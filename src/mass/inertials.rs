@@ -9,8 +9,8 @@ use std::ops::Range;
 /// `text` with an exact `<inertial>` in each link that gets its mass from its `<body>` tag: put in where there is none,
 /// in place of one that the tag overrules. `masses` is in the order of `description.links`.
 ///
-/// Numbers are written with the digits that read back to the same bits (at most 17). Nothing else of the text changes; a text that is no
-/// XML, which a description never comes from, is given back as it is.
+/// Numbers are written with the digits that read back to the same bits (at most 17). Nothing else of the text changes;
+/// a text that is no XML, which a description never comes from, is given back as it is.
 pub fn with_inertials(text: &str, masses: &[MassProperties], description: &Description) -> String {
     let Ok(document) = roxmltree::Document::parse(text) else { return text.to_owned() };
     let by_name: HashMap<&str, &MassProperties> = description

@@ -28,13 +28,17 @@ pub fn bounds(geometry: &Geometry, x_as: &Pose) -> Option<Bounds> {
     let r = x_as.rotation.to_rotation_matrix().into_inner();
     let at = |z: f64| x_as * nalgebra::Point3::new(0.0, 0.0, z);
     let section = |z: f64, a: f64, b: f64| Bounds::around(at(z).coords, ellipsoid_half(&r, [a, b, 0.0]));
-    let ball = |z: f64, radius: f64| Bounds::around(at(z).coords, Vec3::repeat(radius));
+    let half_ball = |z: f64, radius: f64, up: f64| {
+        let axis: Vec3 = r.column(2) * up;
+        let reach = |toward: f64| if toward >= 0.0 { radius } else { radius * (1.0 - toward * toward).max(0.0).sqrt() };
+        Bounds { min: at(z).coords - (-axis).map(reach), max: at(z).coords + axis.map(reach) }
+    };
     let prism = |a: f64, b: f64, top_scale: f64, length: f64| {
         section(-length / 2.0, a, b).union(&section(length / 2.0, a * top_scale, b * top_scale))
     };
     Some(match *geometry {
         Geometry::Box { size } => Bounds::around(at(0.0).coords, r.abs() * Vec3::from(size) / 2.0),
-        Geometry::Sphere { radius } => ball(0.0, radius),
+        Geometry::Sphere { radius } => Bounds::around(at(0.0).coords, Vec3::repeat(radius)),
         Geometry::Ellipsoid { radii } => Bounds::around(at(0.0).coords, ellipsoid_half(&r, radii)),
         Geometry::Cylinder { radius, length } => prism(radius, radius, 1.0, length),
         Geometry::EllipticCylinder { radius_x, radius_y, length } => prism(radius_x, radius_y, 1.0, length),
@@ -42,7 +46,7 @@ pub fn bounds(geometry: &Geometry, x_as: &Pose) -> Option<Bounds> {
         Geometry::Cone { radius_x, radius_y, length } => prism(radius_x, radius_y, 0.0, length),
         Geometry::Frustum { radius_x, radius_y, top_scale, length } => prism(radius_x, radius_y, top_scale, length),
         Geometry::Capsule { radius_top, radius_bottom, length } => {
-            ball(length / 2.0, radius_top).union(&ball(-length / 2.0, radius_bottom))
+            half_ball(length / 2.0, radius_top, 1.0).union(&half_ball(-length / 2.0, radius_bottom, -1.0))
         }
         Geometry::Mesh { .. } | Geometry::Other { .. } => return None,
     })

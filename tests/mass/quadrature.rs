@@ -6,7 +6,7 @@ use realnoid::math::{Mat3, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Weighted points: the integral of f is Σ w·f(point).
-type Cloud = Vec<(f64, Vec3)>;
+pub type Cloud = Vec<(f64, Vec3)>;
 
 /// Mass properties at unit density (solid) or unit thickness × density (hollow), by quadrature.
 pub fn reference(geometry: &Geometry, dimension: Dimension) -> MassProperties {
@@ -30,6 +30,9 @@ fn properties(cloud: &Cloud) -> MassProperties {
     });
     MassProperties { mass, center, inertia }
 }
+
+/// Semi-axes of the section at a height.
+type Section = Box<dyn Fn(f64) -> (f64, f64)>;
 
 /// Gauss–Legendre points of order 8 on `panels` equal parts of [from, to].
 fn gauss(from: f64, to: f64, panels: usize) -> Vec<(f64, f64)> {
@@ -101,8 +104,8 @@ fn solid(geometry: &Geometry) -> Cloud {
 }
 
 /// Break points in height and the semi-axes of the section at a height.
-fn profile(geometry: &Geometry) -> (Vec<f64>, Box<dyn Fn(f64) -> (f64, f64)>) {
-    let prism = |a: f64, b: f64, top: f64, length: f64| -> (Vec<f64>, Box<dyn Fn(f64) -> (f64, f64)>) {
+fn profile(geometry: &Geometry) -> (Vec<f64>, Section) {
+    let prism = |a: f64, b: f64, top: f64, length: f64| -> (Vec<f64>, Section) {
         let scale = move |z: f64| 1.0 + (top - 1.0) * (z / length + 0.5);
         (vec![-length / 2.0, length / 2.0], Box::new(move |z| (a * scale(z), b * scale(z))))
     };
@@ -178,7 +181,8 @@ fn faces([x, y, z]: [f64; 3]) -> Cloud {
     (0..3).flat_map(|axis| [face(axis, -1.0), face(axis, 1.0)].concat()).collect()
 }
 
-fn surface(geometry: &Geometry) -> Cloud {
+/// Points on the surface.
+pub fn surface(geometry: &Geometry) -> Cloud {
     let frustum = |a: f64, b: f64, top: f64, length: f64| {
         let low = ring((a, b), 0.0, -length / 2.0);
         let high = if top > 0.0 { ring((a * top, b * top), 0.0, length / 2.0) } else { Vec::new() };
