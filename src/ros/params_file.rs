@@ -81,7 +81,7 @@ fn collect_sections(prefix: &str, node: &Spanned<Yaml>, file: &str, into: &mut V
 
 /// `*` stands for one token, `**` for any number of tokens, also none.
 fn matches(pattern: &str, full_name: &str) -> bool {
-    fn tokens<'a>(name: &'a str) -> Vec<&'a str> {
+    fn tokens(name: &str) -> Vec<&str> {
         name.split('/').filter(|t| !t.is_empty()).collect()
     }
     fn fits(pattern: &[&str], name: &[&str]) -> bool {

@@ -95,7 +95,7 @@ class Probe:
 
     def publisher(self, kind, topic):
         """A publisher that the simulator already listens to."""
-        publisher = self.node.create_publisher(kind, topic, 10)
+        publisher = self.node.create_publisher(kind, topic, 100)
         wait_until(lambda: publisher.get_subscription_count() > 0, what=f"a subscriber of {topic}")
         return publisher
 

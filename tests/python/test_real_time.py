@@ -13,10 +13,12 @@ def steps(stamps):
     return {b - a for a, b in zip(stamps, stamps[1:])}
 
 
-def test_ten_seconds_at_one_millisecond_lose_nothing(bench, capsys):
+def test_ten_seconds_of_the_humanoid_at_one_millisecond_lose_nothing(start, capsys):
+    bench = start(urdf=None)
     first = nanoseconds(bench.states[0].header.stamp)
     wait_until(lambda: nanoseconds(bench.states[-1].header.stamp) >= first + 10 * 10**9, timeout=20, what="10 s")
     states = list(bench.states)
+    assert len(states[0].name) >= 30
     stamps = [nanoseconds(s.header.stamp) for s in states]
     assert steps(stamps) == {INTERVAL}, "a JointState was lost, or its stamp is off the grid"
     assert len(states) >= 10_001
@@ -34,34 +36,40 @@ FIGURES = ["real-time factor", "lateness p50 [us]", "lateness p99 [us]", "latene
 
 
 def slow_down(bench, client):
-    """1000 steps of the arm take longer than a control interval of 0.5 ms."""
+    """1000 steps of the humanoid take several control intervals."""
     assert bench.probe.set(client, steps_per_interval=1000)[0].successful
-    wait_until(lambda: int(bench.count("real time", "overruns")) >= 100, what="overruns")
 
 
 def test_a_backlog_is_caught_up_interval_by_interval(start):
-    bench = start("-p", "max_catch_up:=100000", "-p", "control_interval:=0.0005")
+    bench = start("-p", "max_catch_up:=100000", urdf=None)
     client = bench.probe.parameters()
     wait_until(lambda: bench.diagnostics, what="diagnostics")
-    before = time.monotonic(), nanoseconds(bench.states[-1].header.stamp)
+    began, stamp = time.monotonic(), nanoseconds(bench.states[-1].header.stamp)
+
+    def behind():
+        return (time.monotonic() - began) - (nanoseconds(bench.states[-1].header.stamp) - stamp) * 1e-9
+
     slow_down(bench, client)
-    late = (time.monotonic() - before[0]) - (nanoseconds(bench.states[-1].header.stamp) - before[1]) * 1e-9
-    assert late > 0.1, "the loop is behind real time"
+    wait_until(lambda: behind() > 0.2, what="the loop to fall behind")
     assert bench.probe.set(client, steps_per_interval=1)[0].successful
-    behind = lambda: (time.monotonic() - before[0]) - (nanoseconds(bench.states[-1].header.stamp) - before[1]) * 1e-9
-    wait_until(lambda: abs(behind()) < 0.05, what="the loop to catch up")
-    assert steps([nanoseconds(s.header.stamp) for s in list(bench.states)]) == {500_000}, "an interval was skipped"
+    wait_until(lambda: behind() < 0.05, what="the loop to catch up")
+    seen = len(bench.diagnostics)
+    wait_until(lambda: len(bench.diagnostics) > seen + 1, what="diagnostics after the backlog")
+    assert int(bench.count("real time", "overruns")) > 100
     assert bench.count("real time", "deadline set anew") == "0"
+    states = list(bench.states)
+    first, last = nanoseconds(states[0].header.stamp), nanoseconds(states[-1].header.stamp)
+    missing = (last - first) // INTERVAL + 1 - len(states)
+    assert missing == int(bench.count("real time", "dropped snapshots")), "each interval is seen, or counted as dropped"
 
 
 def test_beyond_the_bound_real_time_is_given_up_and_counted(start):
-    bench = start("-p", "max_catch_up:=20", "-p", "control_interval:=0.0005")
-    wait_until(lambda: bench.diagnostics, what="diagnostics")
+    bench = start("-p", "max_catch_up:=20", urdf=None)
     slow_down(bench, bench.probe.parameters())
     wait_until(lambda: bench.logged("too slow for real time"), what="the warning")
     assert int(bench.count("real time", "deadline set anew")) > 0
     assert float(bench.count("real time", "real time given up [s]")) > 0.01
-    assert steps([nanoseconds(s.header.stamp) for s in list(bench.states)]) == {500_000}, "simulated time has no gap"
+    assert steps([nanoseconds(s.header.stamp) for s in list(bench.states)]) == {INTERVAL}, "simulated time has no gap"
 
 
 def test_as_fast_as_possible_drops_no_state(start):
