@@ -115,7 +115,8 @@ def fill(colour):
 
 
 def area(polygon):
-    return sum(ax * by - bx * ay for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1])) / 2
+    twice = sum(ax * by - bx * ay for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]))
+    return round(twice / 2, 6)
 
 
 def outlines(shapes, view, left):
