@@ -68,7 +68,7 @@ impl<T: Real> Workspace<T> {
     }
 
     /// Acceleration per torque of an axis in the last solve, with what hangs on it free and its base held: 1/D of the
-    /// articulated inertia, an upper bound of how fast a viscous term on it can be.
+    /// articulated inertia. With a free base it accelerates more.
     pub fn mobility(&self, m: &Model, axis: usize) -> T {
         match m.axes[axis].slot {
             AxisSlot::Scalar { v, .. } => self.dof[v].d,
