@@ -106,7 +106,11 @@ impl Diagnostics {
     }
 
     fn simulation(&self, latest: &Latest) -> DiagnosticStatus {
-        let state = if latest.finite { (Level::Ok, "finite") } else { (Level::Error, "the state is not finite") };
+        let state = if latest.finite {
+            (Level::Ok, "finite")
+        } else {
+            (Level::Error, "diverged: stands still at the last finite state")
+        };
         let values = vec![
             pair("simulated time [s]", format!("{:.9}", latest.stamp_ns as f64 * 1e-9)),
             pair("control intervals", latest.interval),

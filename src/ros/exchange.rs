@@ -4,7 +4,7 @@
 //! ring that drops the oldest and counts, timing comes out by exchanging boxes.
 
 use crate::monitor::Timing;
-use crate::world::{AxisCommand, Settings, Snapshot, Stats, World};
+use crate::world::{AxisCommand, Settings, Snapshot, World};
 use crossbeam_queue::ArrayQueue;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -16,15 +16,6 @@ pub const RING_CAPACITY: usize = 1024;
 const SPARE_BOXES: usize = 2;
 /// One collects, one travels, one is being read.
 const TIMING_BOXES: usize = 3;
-
-/// What leaves the control thread after each interval.
-#[derive(Clone, Debug)]
-pub struct Sample {
-    /// The state.
-    pub snapshot: Snapshot,
-    /// Counters of the world.
-    pub stats: Stats,
-}
 
 /// Settings that may change while the loop runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,8 +51,8 @@ pub struct CommandEnd {
 }
 
 struct Ring {
-    full: ArrayQueue<Box<Sample>>,
-    free: ArrayQueue<Box<Sample>>,
+    full: ArrayQueue<Box<Snapshot>>,
+    free: ArrayQueue<Box<Snapshot>>,
     dropped: AtomicU64,
     timing_full: ArrayQueue<Box<Timing>>,
     timing_free: ArrayQueue<Box<Timing>>,
@@ -94,7 +85,7 @@ impl Ring {
             timing_free: ArrayQueue::new(TIMING_BOXES),
         };
         for _ in 0..RING_CAPACITY + SPARE_BOXES {
-            let _ = ring.free.push(Box::new(Sample { snapshot: world.new_snapshot(), stats: world.stats() }));
+            let _ = ring.free.push(Box::new(world.new_snapshot()));
         }
         for _ in 1..TIMING_BOXES {
             let _ = ring.timing_free.push(Box::new(Timing::new()?));
@@ -107,10 +98,9 @@ impl ControlEnd {
     /// Hands the state of `world` out; drops the oldest unpublished state if there is no room, and counts it.
     pub fn emit(&self, world: &World) {
         // Never empty: the ring and the publishing thread together hold one box less than there are.
-        let Some(mut sample) = self.ring.free.pop() else { return };
-        world.write_snapshot(&mut sample.snapshot);
-        sample.stats = world.stats();
-        if let Some(oldest) = self.ring.full.force_push(sample) {
+        let Some(mut snapshot) = self.ring.free.pop() else { return };
+        world.write_snapshot(&mut snapshot);
+        if let Some(oldest) = self.ring.full.force_push(snapshot) {
             self.ring.dropped.fetch_add(1, Ordering::Relaxed);
             let _ = self.ring.free.push(oldest);
         }
@@ -130,20 +120,20 @@ impl ControlEnd {
 }
 
 impl PublishEnd {
-    /// Shows the oldest unpublished sample to `publish`; false if there is none.
-    pub fn next(&self, publish: impl FnOnce(&Sample)) -> bool {
-        let Some(sample) = self.ring.full.pop() else { return false };
-        publish(&sample);
-        let _ = self.ring.free.push(sample);
+    /// Shows the oldest unpublished snapshot to `publish`; false if there is none.
+    pub fn next(&self, publish: impl FnOnce(&Snapshot)) -> bool {
+        let Some(snapshot) = self.ring.full.pop() else { return false };
+        publish(&snapshot);
+        let _ = self.ring.free.push(snapshot);
         true
     }
 
-    /// Samples dropped since the start because the ring was full.
+    /// Snapshots dropped since the start because the ring was full.
     pub fn dropped(&self) -> u64 {
         self.ring.dropped.load(Ordering::Relaxed)
     }
 
-    /// Samples waiting.
+    /// Snapshots waiting.
     pub fn waiting(&self) -> usize {
         self.ring.full.len()
     }
@@ -208,7 +198,7 @@ mod tests {
         }
         assert!(!control.has_room());
         let mut seen = vec![];
-        while publish.next(|s| seen.push(s.snapshot.interval)) {}
+        while publish.next(|s| seen.push(s.interval)) {}
         assert_eq!(publish.dropped(), extra as u64);
         assert!(seen.iter().copied().eq(extra as u64 + 1..=(RING_CAPACITY + extra) as u64), "{seen:?}");
         assert!(control.has_room());

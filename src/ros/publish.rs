@@ -1,6 +1,5 @@
 //! Snapshots → topics.
 
-use super::exchange::Sample;
 use super::log::Logger;
 use super::messages::{
     Clock, Header, JointState, Shared, StringMessage, TFMessage, Time, Twist as TwistMessage, TwistStamped,
@@ -68,8 +67,7 @@ impl Outlet {
     }
 
     /// Publishes one state; /tf not more often than `tf_rate` (Hz, simulated time; 0: never).
-    pub fn publish(&mut self, sample: &Sample, tf_rate: f64) {
-        let snapshot = &sample.snapshot;
+    pub fn publish(&mut self, snapshot: &Snapshot, tf_rate: f64) {
         let stamp = Time::from_ns(snapshot.stamp_ns);
         let mut refused = send(&self.clock, Clock { clock: stamp });
         refused += send(&self.joint_states, self.joint_state(snapshot, stamp));

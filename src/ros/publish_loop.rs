@@ -81,11 +81,9 @@ impl<'a> PublishLoop<'a> {
         let tf_rate = self.live.tf_rate();
         for _ in 0..=self.end.waiting() {
             let (outlet, latest) = (&mut self.connection.outlet, &mut self.latest);
-            let any = self.end.next(|sample| {
-                outlet.publish(sample, tf_rate);
-                let s = &sample.snapshot;
-                let stats = sample.stats;
-                *latest = Some(Latest { stamp_ns: s.stamp_ns, interval: s.interval, stats, finite: s.finite });
+            let any = self.end.next(|s| {
+                outlet.publish(s, tf_rate);
+                *latest = Some(Latest { stamp_ns: s.stamp_ns, interval: s.interval, stats: s.stats, finite: s.finite });
             });
             if !any {
                 break;
@@ -105,7 +103,7 @@ impl<'a> PublishLoop<'a> {
         let _ = self.connection.diagnostics.publish(report);
         let log = &self.connection.log;
         if !latest.finite {
-            log.warn_once("finite", "the state is not finite any more; joint_states carries what is left of it");
+            log.warn_once("finite", "a step would have given values that are not finite: the simulation stands still at the state before it");
         }
         if self.report.total.rebases > 0 {
             let lost = self.report.total.lost_ns as f64 * 1e-9;
