@@ -93,11 +93,11 @@ pub struct SimulateArgs {
     /// World settings (YAML); flags win over it.
     #[arg(long)]
     pub scene: Option<PathBuf>,
-    /// Simulated time, s.
-    #[arg(long)]
+    /// Simulated time, s; rounded to whole control intervals.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub duration: f64,
     /// s; 0.001 unless the scene says otherwise.
-    #[arg(long)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub control_interval: Option<f64>,
     /// Steps per control interval, 1 to 1000; 5 unless the scene says otherwise.
     #[arg(long)]
@@ -115,7 +115,7 @@ pub struct SimulateArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
     /// Simulated time per control interval against the interval, 0 to 100.
-    #[arg(long)]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub time_scale: Option<f64>,
     /// fixed (on a test stand) or free.
     #[arg(long, value_parser = ["fixed", "free"])]
@@ -135,8 +135,8 @@ pub struct SimulateArgs {
     /// Servo target (rad; m for a linear axis) during the whole run.
     #[arg(long, value_name = "AXIS=POSITION")]
     pub servo: Vec<String>,
-    /// Time between two rows, s; the control interval if not given.
-    #[arg(long)]
+    /// Time between two rows, s: a whole multiple of the control interval, which it is if not given.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub every: Option<f64>,
     /// Switch an effect off: gravity, damping, friction, limits, drives.
     #[arg(long, value_name = "EFFECT")]
@@ -144,8 +144,12 @@ pub struct SimulateArgs {
     /// Switch an effect on.
     #[arg(long, value_name = "EFFECT")]
     pub on: Vec<String>,
-    /// Where the rows go: FILE.csv or FILE.mcap.
-    #[arg(long)]
+    /// Where the rows go: FILE.csv or FILE.mcap; its folder is made if it does not exist.
+    ///
+    /// FILE.mcap is a bag of ROS 2 messages: /clock, /joint_states and, for a free base, /odom. In a new or empty folder
+    /// a metadata.yaml is written beside it, which makes the folder a bag for `ros2 bag play FOLDER` and rosbags. In a
+    /// folder with other things FILE.mcap stands for itself. An earlier run of the same name is replaced.
+    #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }
 

@@ -2,21 +2,24 @@
 
 use super::args::{SimulateArgs, assignment, numbers};
 use super::load::{Loaded, load_at};
-use super::scene::{Scene, integrator, interval_ns};
+use super::scene::{Scene, integrator, interval_ns, pose};
 use crate::description::Severity;
 use crate::engine::{ENGINE_NAMES, State};
-use crate::math::{Pose, Quat, Vec3};
+use crate::math::{Pose, Vec3};
 use crate::model::{Base, EFFECT_NAMES, Model};
-use crate::record::CsvWriter;
+use crate::record::{Format, Recorder, Sample};
 use crate::world::{AxisCommand, Settings, World};
-use nalgebra::{Quaternion, Translation3};
 use serde_json::json;
-use std::fs::File;
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Runs; prints the summary to standard output. Exit codes: 0 all finite, 1 not finite or not loaded, 2 wrong arguments.
+/// Set by SIGINT and SIGTERM: the run ends early, its file is completed.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Runs; prints the summary to standard output. Exit codes: 0 all finite; 1 not finite, stopped by a signal, a file that
+/// cannot be read or written; 2 wrong arguments.
 pub fn run(args: &SimulateArgs) -> ExitCode {
     let mut plan = match Plan::new(args) {
         Ok(plan) => plan,
@@ -28,13 +31,27 @@ pub fn run(args: &SimulateArgs) -> ExitCode {
     match plan.run() {
         Ok(summary) => {
             println!("{summary:#}");
-            if summary["finite"] == true { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+            let complete = summary["finite"] == true && summary["stopped"] == false;
+            if complete { ExitCode::SUCCESS } else { ExitCode::FAILURE }
         }
         Err(reason) => {
             eprintln!("error: {reason}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// What became of a run.
+#[derive(Default)]
+struct Outcome {
+    /// CPU time of the steps, s.
+    cpu: f64,
+    rows: u64,
+    /// Every value looked at was finite.
+    finite: bool,
+    /// By a signal.
+    stopped: bool,
+    files: Vec<PathBuf>,
 }
 
 /// Checked arguments.
@@ -49,12 +66,13 @@ struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// `Err`: exit code (1 not loaded, 2 wrong arguments) and reason.
     fn new(args: &'a SimulateArgs) -> Result<Self, (u8, String)> {
-        let usage = |reason| (2, reason);
-        let scene = Scene::read(args.scene.as_deref()).map_err(usage)?;
+        let (usage, unloadable) = (|reason| (2, reason), |reason| (1, reason));
+        args.out.as_deref().map(Format::of).transpose().map_err(|e| usage(format!("--out {e}")))?;
+        let scene = Scene::read(args.scene.as_deref()).map_err(unloadable)?;
         let settings = settings(args, &scene).map_err(usage)?;
-        let base = base(args, &scene).map_err(usage)?;
+        let base = base(args, &scene);
         let pose = base_pose(args, &scene).map_err(usage)?;
-        let loaded = load_at(Some(&args.urdf), base, pose).map_err(|reason| (1, reason))?;
+        let loaded = load_at(Some(&args.urdf), base, pose).map_err(unloadable)?;
         let mut model = Model::clone(&loaded.model);
         switch_effects(args, &scene, &mut model).map_err(usage)?;
         let initial = initial_state(args, &model, pose).map_err(usage)?;
@@ -63,41 +81,40 @@ impl<'a> Plan<'a> {
         set_commands(args, &mut world).map_err(usage)?;
         let (intervals, every) = schedule(args, &settings).map_err(usage)?;
         let mut warnings = warnings(&loaded);
-        warnings.extend(scene.pending());
+        warnings.extend(scene.pending);
         Ok(Self { args, world, intervals, every, warnings })
     }
 
     fn run(&mut self) -> Result<serde_json::Value, String> {
-        let mut writer = match &self.args.out {
-            Some(path) => Some(open(path, &self.world)?),
-            None => None,
-        };
-        let mut cpu = 0.0;
-        let mut rows = 0;
+        let open = |path: &PathBuf| Recorder::create(path, self.world.model()).map_err(|e| e.to_string());
+        let mut recorder = self.args.out.as_ref().map(open).transpose()?;
+        // Without the handler the run only loses its neat end.
+        let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+        let mut outcome = Outcome { finite: true, ..Outcome::default() };
+        let mut sample = Sample::new(&self.world);
         for interval in 0..=self.intervals {
-            if let Some(w) = writer.as_mut().filter(|_| interval % self.every == 0) {
-                w.row(&self.world).map_err(|e| self.cannot_write(&e))?;
-                rows += 1;
+            outcome.stopped = STOP.load(Ordering::Relaxed);
+            if interval % self.every == 0 || interval == self.intervals {
+                sample.take(&self.world);
+                outcome.finite &= sample.is_finite();
             }
-            if interval < self.intervals {
-                let start = super::bench::cpu_seconds();
-                self.world.advance();
-                cpu += super::bench::cpu_seconds() - start;
+            if let Some(r) = recorder.as_mut().filter(|_| interval % self.every == 0) {
+                r.write(&sample).map_err(|e| e.to_string())?;
+                outcome.rows += 1;
             }
+            if outcome.stopped || interval == self.intervals {
+                break;
+            }
+            let start = super::bench::cpu_seconds();
+            self.world.advance();
+            outcome.cpu += super::bench::cpu_seconds() - start;
         }
-        if let Some(w) = writer {
-            w.finish().map_err(|e| self.cannot_write(&e))?;
-        }
-        Ok(self.summary(cpu, rows))
+        outcome.files = recorder.map_or_else(|| Ok(Vec::new()), Recorder::finish).map_err(|e| e.to_string())?;
+        Ok(self.summary(&outcome))
     }
 
-    fn cannot_write(&self, error: &std::io::Error) -> String {
-        let path = self.args.out.as_deref().unwrap_or(Path::new(""));
-        format!("cannot write '{}': {error}", path.display())
-    }
-
-    fn summary(&self, cpu: f64, rows: u64) -> serde_json::Value {
-        let s = self.world.stats();
+    fn summary(&self, outcome: &Outcome) -> serde_json::Value {
+        let (s, cpu) = (self.world.stats(), outcome.cpu);
         let mut warnings = self.warnings.clone();
         let counted = [
             (
@@ -109,15 +126,23 @@ impl<'a> Plan<'a> {
             (s.pole_steps, "steps had a 3dof group at its pole: torques about its angles were bounded there"),
             (s.diverged_steps, "step would have given values that are not finite: the world stood still from there on"),
         ];
+        if outcome.stopped {
+            warnings.push("stopped by a signal before the end of the duration".into());
+        }
+        if !outcome.finite && s.diverged_steps == 0 {
+            warnings.push("a value is not finite: the state can be represented, its energy or momentum cannot".into());
+        }
         warnings.extend(counted.iter().filter(|(n, _)| *n > 0).map(|(n, text)| format!("{n} {text}")));
         json!({
             "steps": s.steps,
-            "rows": rows,
+            "rows": outcome.rows,
+            "files": outcome.files,
             "simulated_seconds": self.world.time(),
             "cpu_seconds": cpu,
             "us_per_step": if s.steps > 0 { cpu * 1e6 / s.steps as f64 } else { 0.0 },
             "worst_penetration": 0.0,
-            "finite": s.diverged_steps == 0,
+            "finite": outcome.finite,
+            "stopped": outcome.stopped,
             "fallback_steps": s.fallback_steps,
             "unsettled_steps": s.unsettled_steps,
             "pole_steps": s.pole_steps,
@@ -127,7 +152,7 @@ impl<'a> Plan<'a> {
 }
 
 fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {
-    let mut s = scene.settings()?;
+    let mut s = scene.settings;
     if let Some(t) = args.control_interval {
         s.control_interval_ns = interval_ns(t)?;
     }
@@ -147,33 +172,34 @@ fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {
     Ok(s)
 }
 
-fn base(args: &SimulateArgs, scene: &Scene) -> Result<Base, String> {
-    match args.base.as_deref().or(scene.robot.base.as_deref()) {
-        None | Some("fixed") => Ok(Base::Fixed),
-        Some("free") => Ok(Base::Free),
-        Some(other) => Err(format!("base '{other}' does not exist; choose one of: fixed, free")),
-    }
+fn base(args: &SimulateArgs, scene: &Scene) -> Base {
+    args.base.as_deref().map(super::base_by_name).or(scene.base).unwrap_or(Base::Fixed)
 }
 
 fn base_pose(args: &SimulateArgs, scene: &Scene) -> Result<Pose, String> {
-    let flag = args.base_pose.as_ref().map(|text| numbers("--base-pose", "X,Y,Z,QX,QY,QZ,QW", text)).transpose()?;
-    let Some(p) = flag.or(scene.robot.pose) else { return Ok(Pose::identity()) };
-    let q = Quaternion::new(p[6], p[3], p[4], p[5]);
-    if (q.norm() - 1.0).abs() > 1e-3 {
-        return Err(format!("base pose: the quaternion's length is {}; it must be 1", q.norm()));
-    }
-    Ok(Pose::from_parts(Translation3::new(p[0], p[1], p[2]), Quat::from_quaternion(q)))
+    let Some(text) = &args.base_pose else { return Ok(scene.pose) };
+    let form = "X,Y,Z,QX,QY,QZ,QW";
+    pose(numbers("--base-pose", form, text)?).map_err(|reason| format!("--base-pose {text}: {reason}"))
 }
 
 fn switch_effects(args: &SimulateArgs, scene: &Scene, model: &mut Model) -> Result<(), String> {
-    let from_scene = scene.world.effects.iter().map(|(name, on)| (name, *on));
-    let flags = args.off.iter().map(|n| (n, false)).chain(args.on.iter().map(|n| (n, true)));
-    for (name, on) in from_scene.chain(flags) {
-        if !model.effects.switch(name, on) {
-            return Err(format!("effect '{name}' does not exist; choose one of: {}", EFFECT_NAMES.join(", ")));
+    for (name, on) in &scene.effects {
+        switch_effect(model, name, *on)?;
+    }
+    if let Some(both) = args.off.iter().find(|name| args.on.contains(name)) {
+        return Err(format!("--off {both} and --on {both} contradict each other; leave one of them out"));
+    }
+    for (flag, names, on) in [("--off", &args.off, false), ("--on", &args.on, true)] {
+        for name in names {
+            switch_effect(model, name, on).map_err(|reason| format!("{flag} {name}: {reason}"))?;
         }
     }
     Ok(())
+}
+
+fn switch_effect(model: &mut Model, name: &str, on: bool) -> Result<(), String> {
+    let known = || format!("effect '{name}' does not exist; choose one of: {}", EFFECT_NAMES.join(", "));
+    if model.effects.switch(name, on) { Ok(()) } else { Err(known()) }
 }
 
 fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, String> {
@@ -202,7 +228,7 @@ fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, St
 
 fn set_commands(args: &SimulateArgs, world: &mut World) -> Result<(), String> {
     let model = world.model().clone();
-    let mut commands = world.commands().to_vec();
+    let (mut commands, mut given_to) = (world.commands().to_vec(), Vec::new());
     let torque = AxisCommand::torque as fn(f64) -> AxisCommand;
     let given = args.effort.iter().map(|t| ("--effort", "AXIS=TORQUE", t, torque));
     let given =
@@ -210,7 +236,14 @@ fn set_commands(args: &SimulateArgs, world: &mut World) -> Result<(), String> {
     for (flag, form, text, command) in given {
         let (name, values) = assignment(flag, form, text)?;
         let [value] = values[..] else { return Err(format!("{flag} {text}: must be {form}")) };
-        commands[axis(&model, flag, name)?] = command(value);
+        let axis = axis(&model, flag, name)?;
+        if given_to.contains(&axis) {
+            return Err(format!(
+                "{flag} {text}: axis '{name}' already has a command; give one --effort or one --servo"
+            ));
+        }
+        given_to.push(axis);
+        commands[axis] = command(value);
     }
     world.set_commands(&commands).map_err(|axis| format!("the command of axis {axis} is not sound"))
 }
@@ -226,27 +259,23 @@ fn axis(m: &Model, flag: &str, name: &str) -> Result<usize, String> {
 fn schedule(args: &SimulateArgs, s: &Settings) -> Result<(u64, u64), String> {
     let interval = s.control_interval_ns as f64 * 1e-9 * s.time_scale;
     if interval <= 0.0 {
-        return Err("--time-scale 0 stops time: the duration would never be reached".into());
+        return Err("time_scale 0 stops time: the duration would never be reached".into());
     }
     if !args.duration.is_finite() || args.duration < 0.0 {
         return Err(format!("--duration {}: must be a finite number of seconds, 0 or more", args.duration));
     }
     let every = args.every.unwrap_or(interval);
-    if !every.is_finite() || every < interval * 0.999 {
-        return Err(format!("--every {every}: must be at least one control interval, {interval} s"));
+    let ratio = every / interval;
+    // Far more than rounding, far less than a mistake.
+    let whole = ratio.is_finite() && ratio >= 0.5 && (ratio - ratio.round()).abs() <= 1e-6;
+    if !whole {
+        let scaled = if s.time_scale == 1.0 { "" } else { " times the time scale" };
+        return Err(format!("--every {every}: must be a whole multiple of the control interval{scaled}, {interval} s"));
     }
-    Ok(((args.duration / interval).round() as u64, (every / interval).round() as u64))
+    Ok(((args.duration / interval).round() as u64, ratio.round() as u64))
 }
 
 fn warnings(loaded: &Loaded) -> Vec<String> {
     let told = loaded.findings.iter().filter(|f| f.severity == Severity::Warning);
     told.map(|f| format!("{}:{}: {}: {}", loaded.description.file, f.at.line, f.element, f.message)).collect()
-}
-
-fn open(path: &Path, world: &World) -> Result<CsvWriter<File>, String> {
-    let wrong = |e: std::io::Error| format!("cannot write '{}': {e}", path.display());
-    match path.extension().and_then(|e| e.to_str()) {
-        Some("csv") => CsvWriter::new(File::create(path).map_err(wrong)?, world).map_err(wrong),
-        _ => Err(format!("--out {}: must end in .csv or .mcap", path.display())),
-    }
 }
