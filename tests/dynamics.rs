@@ -70,7 +70,6 @@ fn mass_matrix_agrees_with_rnea() {
         for i in 0..m.nv {
             let sum: f64 = bias[i] + (0..m.nv).map(|j| mass[i * m.nv + j] * qdd[j]).sum::<f64>();
             assert!((sum - tau[i]).abs() <= 1e-12 * largest(&tau).max(1.0) * m.nv as f64);
-            assert_eq!(mass[i * m.nv..][..m.nv].iter().all(|x| x.is_finite()), true);
         }
     }
 }

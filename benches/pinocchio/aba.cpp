@@ -1,4 +1,4 @@
-// Time per call of Pinocchio's C++ ABA (world and local convention), RNEA and CRBA on random states; thread CPU time,
+// Time per call of Pinocchio's C++ ABA (world and local convention) and CRBA on random states; thread CPU time,
 // medians. Printed as JSON in µs, to stand beside `realnoid bench --json`.
 #include <algorithm>
 #include <ctime>
@@ -8,9 +8,8 @@
 
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
-#include <pinocchio/algorithm/rnea.hpp>
 #include <pinocchio/multibody.hpp>
-#include <pinocchio/parsers/urdf.hpp>
+#include <pinocchio/serialization.hpp>
 
 namespace pin = pinocchio;
 
@@ -39,12 +38,12 @@ double MedianMicroseconds(double seconds, Call call) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: aba FILE.urdf [seconds per function]\n";
+    std::cerr << "usage: aba MODEL.xml [seconds per function]\n";
     return 2;
   }
   const double seconds = argc > 2 ? std::atof(argv[2]) : 0.5;
   pin::Model model;
-  pin::urdf::buildModel(argv[1], pin::JointModelFreeFlyer(), model);
+  model.loadFromXML(argv[1], "model");
   pin::Data data(model);
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -59,8 +58,7 @@ int main(int argc, char** argv) {
       seconds, [&](int n) { pin::aba(model, data, q[n], v[n], tau, pin::Convention::WORLD); });
   const auto local = MedianMicroseconds(
       seconds, [&](int n) { pin::aba(model, data, q[n], v[n], tau, pin::Convention::LOCAL); });
-  const auto rnea = MedianMicroseconds(seconds, [&](int n) { pin::rnea(model, data, q[n], v[n], tau); });
   const auto crba = MedianMicroseconds(seconds, [&](int n) { pin::crba(model, data, q[n], pin::Convention::LOCAL); });
-  std::cout << "{\"aba_world\": " << world << ", \"aba_local\": " << local << ", \"rnea\": " << rnea
+  std::cout << "{\"aba_world\": " << world << ", \"aba_local\": " << local
             << ", \"crba\": " << crba << "}\n";
 }

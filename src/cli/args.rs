@@ -19,6 +19,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// The ROS 2 node `forward_dynamics`: simulates in real time until SIGINT or SIGTERM.
+    #[command(after_long_help = crate::ros::parameters::help())]
     Run {
         /// URDF file; the embedded humanoid if none is given.
         urdf: Option<PathBuf>,

@@ -4,7 +4,7 @@ use super::load::examine;
 use crate::description::render;
 use crate::math::Pose;
 use crate::model::Base;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -13,8 +13,10 @@ use std::process::ExitCode;
 pub fn run(path: Option<&Path>) -> ExitCode {
     match examine(path, Base::Fixed, Pose::identity()) {
         Ok(examined) => {
-            let findings = &examined.findings;
-            print!("{}", render(findings, &examined.file, &examined.text, std::io::stdout().is_terminal()));
+            let mut out = std::io::stdout();
+            let report = render(&examined.findings, &examined.file, &examined.text, out.is_terminal());
+            // A reader that has gone away (`| head`) is no failure of the check.
+            let _ = out.write_all(report.as_bytes());
             if examined.is_sound() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
         }
         Err(message) => {

@@ -6,6 +6,7 @@ pub mod check;
 pub mod evaluate;
 pub mod inspect;
 pub mod load;
+pub mod run;
 pub mod scene;
 pub mod simulate;
 
@@ -15,9 +16,10 @@ use std::process::ExitCode;
 
 /// Reads the command line and does what it says.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let (own, ros) = crate::ros::split_arguments(std::env::args_os());
+    let cli = Cli::parse_from(own);
     match cli.command.unwrap_or(Command::Run { urdf: None }) {
-        Command::Run { .. } => ExitCode::SUCCESS,
+        Command::Run { urdf } => run::start(urdf.as_deref(), ros),
         Command::Check { urdf } => check::run(urdf.as_deref()),
         Command::Inspect(args) => inspect::run(&args),
         Command::Simulate(args) => simulate::run(&args),

@@ -38,7 +38,7 @@ pub(super) fn read(element: &Element, report: &mut Report) -> Option<Joint> {
     let origin = origin::read(element, report);
     let axis = read_axis(element, kind, report);
     let limit = read_limit(element, kind, report);
-    let (damping, friction) = read_dynamics(element, report);
+    let (damping, friction) = read_dynamics(element, kind, report);
     let mimic = element.first("mimic", report).and_then(|e| read_mimic(&e, report));
     let (drive, constraint) = tags::joint::read(element, kind.unwrap_or(JointKind::Revolute), report);
     let ((parent, parent_at), (child, child_at)) = (parent?, child?);
@@ -95,7 +95,10 @@ fn read_axis(element: &Element, kind: Option<JointKind>, report: &mut Report) ->
         return DEFAULT;
     };
     unknown::attributes(&axis, &["xyz"], report);
-    let read = |report: &mut Report| axis.vector("xyz", Domain::Any, report);
+    let read = |report: &mut Report| {
+        axis.required("xyz", report)?;
+        axis.vector("xyz", Domain::Any, report)
+    };
     let xyz = if moves { read(report) } else { report.lenient(read) }.unwrap_or(DEFAULT);
     let length = xyz.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length > 0.0 && length.is_finite() {
@@ -131,6 +134,11 @@ fn read_limit(element: &Element, kind: Option<JointKind>, report: &mut Report) -
     };
     let (lower, upper) = (bound("lower", report), bound("upper", report));
     let (lower, upper) = if limited { range(&limit, lower, upper, report) } else { UNLIMITED };
+    if kind == Some(JointKind::Continuous) && (limit.value("lower").is_some() || limit.value("upper").is_some()) {
+        let message = "the range of a continuous joint is ignored, as URDF says".to_string();
+        let mend = "write type=\"revolute\" if the range is meant";
+        report.add_once("", Finding::note("ignored-range", limit.place(report), message, mend));
+    }
     let moves = has_axis(kind);
     let effort = bound_or_placeholder(&limit, "effort", moves, report);
     let velocity = bound_or_placeholder(&limit, "velocity", moves, report);
@@ -147,7 +155,7 @@ fn range(limit: &Element, lower: Option<f64>, upper: Option<f64>, report: &mut R
     let given = [("lower", lower), ("upper", upper)].iter().all(|(name, x)| x.is_some() == limit.value(name).is_some());
     if low > high && given {
         let message = format!("lower = {low} is greater than upper = {high}");
-        let mend = "swap the two";
+        let mend = "swap the two, or mend a sign";
         report.add(Finding::error("lower-above-upper", limit.place_of("lower", report), message, mend));
     } else if low == high && given {
         let message = format!("the range is {low} to {high}: this axis cannot move");
@@ -180,8 +188,10 @@ fn bound_or_placeholder(limit: &Element, name: &'static str, moves: bool, report
     Some(value)
 }
 
-fn read_dynamics(element: &Element, report: &mut Report) -> (f64, f64) {
-    let Some(dynamics) = element.first("dynamics", report) else { return (0.0, 0.0) };
+/// Damping and friction of a joint with one axis; 0 for all others.
+fn read_dynamics(element: &Element, kind: Option<JointKind>, report: &mut Report) -> (f64, f64) {
+    let Some(dynamics) = element.first("dynamics", report).filter(|_| has_axis(kind)) else { return (0.0, 0.0) };
+    unknown::attributes(&dynamics, &["damping", "friction"], report);
     let mut number = |name| dynamics.number(name, Domain::NonNegative, report).unwrap_or(0.0);
     (number("damping"), number("friction"))
 }

@@ -9,6 +9,7 @@ use super::{Geometry, Inertial, Link, PlacedShape, shapes, tags};
 
 /// Elements of a link that mean something here.
 const KNOWN: &[&str] = &["inertial", "visual", "collision", "realnoid"];
+const TENSOR: &str = "<inertia ixx=\"…\" ixy=\"…\" ixz=\"…\" iyy=\"…\" iyz=\"…\" izz=\"…\"/>";
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
 
 /// Reads one link; a fault is reported and read as if the item were not there.
@@ -37,15 +38,23 @@ pub(super) fn read(element: &Element, report: &mut Report) -> Link {
 fn read_inertial(element: &Element, report: &mut Report) -> Option<Inertial> {
     unknown::children(element, &["origin", "mass", "inertia"], report);
     let origin = origin::read(element, report);
-    let mass = child(element, "mass", "<mass value=\"1.5\"/>", report).and_then(|mass| {
-        unknown::attributes(&mass, &["value"], report);
-        mass.required("value", report)?;
-        mass.number("value", Domain::Any, report)
-    });
-    let inertia =
-        child(element, "inertia", "<inertia ixx=\"…\" ixy=\"…\" ixz=\"…\" iyy=\"…\" iyz=\"…\" izz=\"…\"/>", report)
-            .and_then(|inertia| read_tensor(&inertia, report));
+    let mass = child(element, "mass", "<mass value=\"1.5\"/>", report).and_then(|mass| read_mass(&mass, report));
+    let tensor = child(element, "inertia", TENSOR, report);
+    let inertia = tensor.and_then(|tensor| read_tensor(&tensor, report));
     Some(Inertial { at: element.place(report).at, origin, mass: mass?, inertia: inertia? })
+}
+
+fn read_mass(element: &Element, report: &mut Report) -> Option<f64> {
+    unknown::attributes(element, &["value"], report);
+    element.required("value", report)?;
+    let mass = element.number("value", Domain::Any, report)?;
+    if mass < 0.0 {
+        let message = format!("the mass is negative: {mass} kg");
+        let place = element.place_of("value", report);
+        report.add(Finding::error("negative-mass", place, message, "a mass is 0 or greater"));
+        return None;
+    }
+    Some(mass)
 }
 
 fn read_tensor(element: &Element, report: &mut Report) -> Option<[f64; 6]> {

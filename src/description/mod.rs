@@ -1,6 +1,6 @@
 //! Text → [`Description`]: every item of the URDF and every tag of ours with its place, checked; findings.
 //!
-//! A positioned XML pass reads and checks everything; [`standard`] then lets urdf-rs read the standard part
+//! A positioned XML pass reads and checks everything; `standard` then lets urdf-rs read the standard part
 //! as well, and the two must agree.
 
 mod checks;

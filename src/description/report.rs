@@ -103,7 +103,8 @@ impl<'t> Report<'t> {
             let lines: Vec<_> = kind.others.iter().take(LINES_OF_MANY).map(u32::to_string).collect();
             let more = if kind.others.len() > LINES_OF_MANY { ", …" } else { "" };
             let total = kind.others.len() + 1;
-            let tail = format!(" ({total} of them, also in lines {}{more})", lines.join(", "));
+            let word = if lines.len() == 1 { "line" } else { "lines" };
+            let tail = format!(" ({total} of them, also in {word} {}{more})", lines.join(", "));
             self.findings[kind.first].message.push_str(&tail);
         }
         self.findings.sort_by_key(|f| (std::cmp::Reverse(f.severity), f.at.start));

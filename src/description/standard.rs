@@ -11,8 +11,8 @@ use std::fmt::Write;
 /// Elements and attributes of the standard part that the dynamics use; each element at most once per parent.
 const INERTIAL: [(&str, &[&str]); 3] =
     [("origin", &["xyz", "rpy"]), ("mass", &["value"]), ("inertia", &["ixx", "ixy", "ixz", "iyy", "iyz", "izz"])];
-const JOINT: [(&str, &[&str]); 4] =
-    [("origin", &["xyz", "rpy"]), ("parent", &["link"]), ("child", &["link"]), ("dynamics", &["damping", "friction"])];
+const JOINT: [(&str, &[&str]); 3] = [("origin", &["xyz", "rpy"]), ("parent", &["link"]), ("child", &["link"])];
+const DYNAMICS: (&str, &[&str]) = ("dynamics", &["damping", "friction"]);
 const AXIS: (&str, &[&str]) = ("axis", &["xyz"]);
 const RANGE: (&str, &[&str]) = ("limit", &["lower", "upper", "effort", "velocity"]);
 const BOUNDS: (&str, &[&str]) = ("limit", &["effort", "velocity"]);
@@ -58,8 +58,8 @@ fn plain_text(robot: &Element, description: &Description) -> String {
 /// What counts for this type of joint: the rest may hold anything.
 fn motion(joint: &Joint) -> &'static [(&'static str, &'static [&'static str])] {
     match joint.kind {
-        JointKind::Revolute | JointKind::Prismatic => &[AXIS, RANGE],
-        JointKind::Continuous => &[AXIS, BOUNDS],
+        JointKind::Revolute | JointKind::Prismatic => &[AXIS, RANGE, DYNAMICS],
+        JointKind::Continuous => &[AXIS, BOUNDS, DYNAMICS],
         _ => &[],
     }
 }
@@ -143,5 +143,42 @@ fn equal_motion(a: &Joint, b: &urdf_rs::Joint) -> bool {
             a.axis == axis && a.limit.as_ref().is_none_or(limit)
         }
         _ => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{read, read_robot};
+    use super::*;
+
+    const TEXT: &str = r#"<robot name="r"><link name="a"/><link name="b"><inertial><mass value="2"/>
+        <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 3 4"/>
+        <limit lower="-1" upper="2" effort="3" velocity="4"/></joint></robot>"#;
+
+    /// What the cross-check finds after `change` has falsified our reading.
+    fn disagreements(change: impl Fn(&mut Description)) -> usize {
+        let document = roxmltree::Document::parse(TEXT).unwrap();
+        let robot = Element::root(document.root_element());
+        let mut report = Report::new(TEXT);
+        let mut description = read_robot(&robot, TEXT, "r", &mut report).unwrap();
+        change(&mut description);
+        cross_check(&robot, &description, &mut report);
+        report.finish().iter().filter(|f| f.code == "readers-disagree").count()
+    }
+
+    #[test]
+    fn a_number_misread_is_found() {
+        assert!(read(TEXT, "r").findings.is_empty());
+        assert_eq!(disagreements(|_| {}), 0);
+        assert_eq!(disagreements(|d| d.links[1].inertial.as_mut().unwrap().mass = 2.5), 1);
+        assert_eq!(disagreements(|d| d.links[1].inertial.as_mut().unwrap().inertia[3] = 1.5), 1);
+        assert_eq!(disagreements(|d| d.joints[0].axis = [0.0, 1.0, 0.0]), 1);
+        assert_eq!(disagreements(|d| d.joints[0].limit.as_mut().unwrap().upper = 2.5), 1);
+        assert_eq!(disagreements(|d| d.joints[0].limit.as_mut().unwrap().velocity = None), 1);
+        assert_eq!(disagreements(|d| d.joints[0].origin.rpy[1] = 0.5), 1);
+        assert_eq!(disagreements(|d| d.joints[0].damping = 0.5), 1);
+        assert_eq!(disagreements(|d| d.links[0].name = "c".into()), 1);
+        assert_eq!(disagreements(|d| d.links.truncate(1)), 1);
     }
 }

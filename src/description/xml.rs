@@ -61,7 +61,7 @@ fn not_well_formed(error: &Error, declared: &str, text: &str, report: &Report) -
     };
     let end = start + declared[start..].chars().next().map_or(0, char::len_utf8);
     let place = Place { element: "here".into(), at: report.position(start..end) };
-    let (message, mend) = explain(error, text);
+    let (message, mend) = explain(error, text, place.at.start);
     Finding::error("not-well-formed", place, message, mend)
 }
 
@@ -69,16 +69,19 @@ fn last_character(text: &str) -> usize {
     text.trim_end().char_indices().next_back().map_or(0, |(at, _)| at)
 }
 
-fn explain(error: &Error, text: &str) -> (String, &'static str) {
+fn explain(error: &Error, text: &str, at: usize) -> (String, &'static str) {
     match error {
         Error::NoRootNode if text.trim().is_empty() => {
             ("the file is empty".into(), "give a URDF file: `<robot name=\"…\">` with links and joints")
+        }
+        Error::UnknownToken(_) if !text.trim_start_matches('\u{feff}').trim_start().starts_with('<') => {
+            ("this text is not XML".into(), "give a URDF file, it starts with `<robot`")
         }
         Error::NoRootNode => {
             ("there is no XML element in this text".into(), "give a URDF file, it starts with `<robot`")
         }
         Error::UnexpectedCloseTag(expected, found, _) => (
-            format!("`</{found}>` closes an element while `<{expected}>` is still open"),
+            format!("`</{found}>` closes an element while `<{expected}>`{} is still open", opened(expected, text, at)),
             "close the inner element first, or mend the misspelt closing tag",
         ),
         Error::UnclosedRootNode | Error::UnexpectedEndOfStream => (
@@ -98,6 +101,15 @@ fn explain(error: &Error, text: &str) -> (String, &'static str) {
         }
         other => (format!("this is not well-formed XML: {}", without_position(other)), "mend the XML at this place"),
     }
+}
+
+/// ` of line N`: the last start tag of that name before the fault, which as a rule is the one left open.
+fn opened(tag: &str, text: &str, before: usize) -> String {
+    let head = text.get(..before).unwrap_or_default();
+    let start_tag = format!("<{tag}");
+    let is_whole = |at: usize| head[at + start_tag.len()..].starts_with([' ', '\t', '\r', '\n', '>']);
+    let starts = head.match_indices(&start_tag).filter(|(at, _)| is_whole(*at));
+    starts.last().map_or(String::new(), |(at, _)| format!(" of line {}", head[..at].matches('\n').count() + 1))
 }
 
 /// roxmltree's words without its own ` at line:column` (which counts what the reader inserted).

@@ -143,6 +143,13 @@ impl State {
         }
     }
 
+    /// Takes over another state of the same model; allocates nothing.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.q.copy_from_slice(&other.q);
+        self.v.copy_from_slice(&other.v);
+        self.angles.copy_from_slice(&other.angles);
+    }
+
     fn as_ref(&self) -> StateRef<'_> {
         StateRef { q: &self.q, v: &self.v, angles: &self.angles }
     }
@@ -229,19 +236,19 @@ impl Rbx {
     /// One step: the laws of the axes, then the integrator; a state that is not finite is not taken.
     pub fn step(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings) -> StepReport {
         let mut report = StepReport::default();
-        copy(&mut self.before, &self.state);
+        self.before.copy_from(&self.state);
         report.at_pole = self.axes.prepare(m, self.state.as_ref(), commands, m.effects, s.h);
         if s.integrator == Integrator::SemiImplicitEuler {
             report.unsettled = !self.euler(m, s).settled;
         } else if !self.rk4(m, s) {
-            copy(&mut self.state, &self.before);
+            self.state.copy_from(&self.before);
             self.axes.prepare(m, self.state.as_ref(), commands, m.effects, s.h);
             report.fell_back = true;
             report.unsettled = !self.euler(m, s).settled;
         }
         self.state.read_angles(m);
         if !self.state.finite() {
-            copy(&mut self.state, &self.before);
+            self.state.copy_from(&self.before);
             report.diverged = true;
         }
         report
@@ -262,7 +269,7 @@ impl Rbx {
     }
 
     fn rk4_stages(&mut self, m: &Model, s: &StepSettings, st: &mut Stages) -> bool {
-        copy(&mut st.start, &self.state);
+        st.start.copy_from(&self.state);
         st.sum_q.fill(0.0);
         st.sum_v.fill(0.0);
         for (stage, (ahead, weight)) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)].into_iter().enumerate() {
@@ -314,10 +321,4 @@ fn normalize_all(m: &Model, q: &mut [f64]) {
             _ => {}
         }
     }
-}
-
-fn copy(to: &mut State, from: &State) {
-    to.q.copy_from_slice(&from.q);
-    to.v.copy_from_slice(&from.v);
-    to.angles.copy_from_slice(&from.angles);
 }

@@ -6,8 +6,7 @@
 use std::f64::consts::FRAC_2_PI;
 
 /// π/2 in three parts; the first two have 33 bits, so that their product with a count below 2²⁰ is exact.
-const PIO2: [f64; 3] =
-    [1.570_796_326_734_125_614_17e0, 6.077_100_506_303_965_976_60e-11, 2.022_266_248_795_950_631_54e-21];
+const PIO2: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 /// Adding and taking away 1.5·2⁵² rounds to the nearest integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 /// Up to here the reduction is exact; beyond, the standard library takes over.

@@ -1,1 +1,5 @@
-//! TODO room.
+//! What is shown of a running world: timing of the control loop.
+
+mod timing;
+
+pub use timing::{Percentiles, Timing};

@@ -1,1 +1,31 @@
-//! TODO room.
+//! The ROS 2 node: the only room that knows ros2-client. Messages, parameters, topics, services; no physics.
+//!
+//! Three threads: the control loop (`control`) shares only the lock-free cells of `exchange` with the publishing thread
+//! (`publish_loop`, the main thread) and the listening thread (`listen`: commands and parameters).
+
+mod args;
+mod clock;
+mod commands;
+mod connection;
+mod control;
+mod counts;
+mod diagnostics;
+mod environment;
+mod exchange;
+mod listen;
+mod log;
+pub mod messages;
+mod names;
+mod node;
+pub mod parameters;
+mod params_file;
+mod publish;
+mod publish_loop;
+mod tf;
+mod topics;
+
+pub use args::{RosArgs, split_arguments};
+pub use commands::{Command, Refusal, RefusalKind, Rules, apply};
+pub use environment::{DiscoveryRange, Environment};
+pub use log::{Logger, Severity};
+pub use node::{Robot, run};

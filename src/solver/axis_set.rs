@@ -135,7 +135,7 @@ impl AxisSet {
     pub fn is_smooth(&self, m: &Model, ws: &Workspace<f64>, h: f64) -> bool {
         (0..self.laws.len()).all(|i| {
             let law = &self.laws[i];
-            self.place[i] % 2 == 0 && (law.slope == 0.0 || law.slope * h * ws.mobility(m, i) < 1.0)
+            self.place[i].is_multiple_of(2) && (law.slope == 0.0 || law.slope * h * ws.mobility(m, i) < 1.0)
         })
     }
 

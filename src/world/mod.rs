@@ -171,7 +171,7 @@ impl World {
 
     /// Back to the initial state and time 0; every axis in its mode at start.
     pub fn reset(&mut self) {
-        self.engine.state.clone_from(&self.initial);
+        self.engine.state.copy_from(&self.initial);
         self.engine.axes.reset();
         for (i, axis) in self.model.axes.iter().enumerate() {
             self.commands[i] = match axis.mode {

@@ -200,7 +200,7 @@ fn refuse_massive_between((upper, lower): (&str, &str), link: &Link, element: &E
         "link '{}' (line {}) between {upper} and {lower} has {reason}: it must be massless",
         link.name, link.at.line
     );
-    let mend = format!("take {reason} out of it, or use type=\"combined_hinge\"");
+    let mend = "take that out, or use type=\"combined_hinge\"";
     report.add(Finding::error("group-mass", element.place_of(lower, report), message, mend));
 }
 

@@ -1,8 +1,9 @@
-//! `<inertial>`: a mass that is none, an inertia that no body can have.
+//! `<inertial>`: an inertia that is missing, or that no body can have.
 
+use super::super::element::Element;
 use super::super::finding::{Finding, Place};
 use super::super::report::Report;
-use super::super::{Description, Inertial, Link};
+use super::super::{Description, Inertial};
 use super::tree::Tree;
 use super::{rigid, rigid::Rigid};
 use crate::math::Mat3;
@@ -26,22 +27,20 @@ enum Verdict {
 }
 
 /// All links with `<inertial>`.
-pub(super) fn check(d: &Description, tree: Option<&Tree>, report: &mut Report) {
+pub(super) fn check(d: &Description, robot: &Element, tree: Option<&Tree>, report: &mut Report) {
     let bodies = tree.map(|tree| rigid::merge(d, tree)).unwrap_or_default();
-    for (i, link) in d.links.iter().enumerate() {
+    for (i, (link, element)) in d.links.iter().zip(robot.all("link")).enumerate() {
         if let Some(inertial) = &link.inertial {
-            check_inertial(link, inertial, bodies.get(i).copied().flatten(), report);
+            let tensor = element.all("inertial").flat_map(|e| e.all("inertia")).next();
+            let place = tensor.unwrap_or(element).place(report);
+            check_inertial(inertial, bodies.get(i).copied().flatten(), place, report);
         }
     }
 }
 
-fn check_inertial(link: &Link, inertial: &Inertial, body: Option<Rigid>, report: &mut Report) {
-    let place = Place { element: format!("link '{}' <inertial>", link.name), at: inertial.at };
+fn check_inertial(inertial: &Inertial, body: Option<Rigid>, place: Place, report: &mut Report) {
     let greatest = inertial.inertia.iter().fold(0.0_f64, |max, i| max.max(i.abs()));
-    if inertial.mass < 0.0 {
-        let message = format!("the mass is negative: {} kg", inertial.mass);
-        report.add(Finding::error("negative-mass", place, message, "a mass is 0 or greater"));
-    } else if inertial.mass > 0.0 && greatest <= POINT * inertial.mass {
+    if inertial.mass > 0.0 && greatest <= POINT * inertial.mass {
         let message = format!("{} kg with no inertia: simulated as a point mass", inertial.mass);
         let mend = "give the inertia about the centre of mass";
         report.add_once("", Finding::warning("zero-inertia", place, message, mend));
@@ -60,9 +59,8 @@ fn report_impossible(inertial: &Inertial, body: Option<Rigid>, place: Place, rep
     if own == Verdict::Sound {
         return;
     }
-    let [a, b, c] = moments;
-    let rule =
-        if a < -ROUNDING * c.abs() { "none may be negative" } else { "none may exceed the sum of the other two" };
+    let [a, b, c] = moments.map(|x| if x.abs() < INDEFINITE * moments[2].abs() { 0.0 } else { x });
+    let rule = if a < 0.0 { "none may be negative" } else { "none may exceed the sum of the other two" };
     let shown = format!("the principal moments are {a:.3e}, {b:.3e}, {c:.3e} kg·m², {rule}");
     let mend = "compute it anew about the centre of mass; check the signs of ixy, ixz, iyz, and the unit (kg·m²)";
     let whole = body.map_or(own, |body| verdict(principal_moments(body.inertia)));

@@ -21,7 +21,7 @@ use super::{Joint, Link};
 pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints_read: bool, report: &mut Report) {
     names::check(d, report);
     let tree = tree::check(d, robot, all_joints_read, report);
-    inertias::check(d, tree.as_ref(), report);
+    inertias::check(d, robot, tree.as_ref(), report);
     masses::check(d, tree.as_ref(), report);
     groups::check(d, tags, report);
     ranges::check(d, report);

@@ -10,7 +10,8 @@ const ROUNDING: f64 = 1e-6;
 
 /// Ranges of axes that are in a group or have a drive; plain URDF joints may turn as far as they like.
 pub(super) fn check(d: &Description, report: &mut Report) {
-    for joint in d.joints.iter().filter(|joint| joint.kind == JointKind::Revolute) {
+    let rotary = |joint: &&Joint| matches!(joint.kind, JointKind::Revolute | JointKind::Continuous);
+    for joint in d.joints.iter().filter(rotary) {
         let name = Some(joint.name.as_str());
         let grouped = |g: &&super::super::JointGroup| [&g.h, &g.p, &g.b].iter().any(|axis| axis.as_deref() == name);
         match d.groups.iter().find(grouped) {
@@ -27,11 +28,12 @@ pub(super) fn check(d: &Description, report: &mut Report) {
 
 fn refuse_beyond(bound: f64, joint: &Joint, reason: &str, report: &mut Report) {
     let degrees = bound.to_degrees();
-    let Some(limit) = &joint.limit else {
+    let limit = joint.limit.as_ref().filter(|_| joint.kind == JointKind::Revolute);
+    let Some(limit) = limit else {
         if bound < PI {
             let place = super::place_of_joint(joint);
-            let message = format!("joint '{}' has no <limit>: {reason}", joint.name);
-            let mend = format!("add a <limit> with lower ≥ {:.5} and upper ≤ {bound:.5}", -bound);
+            let message = format!("joint '{}' has no range: {reason}", joint.name);
+            let mend = format!("make it revolute, with a <limit> that stays within ±{bound:.8}");
             report.add(Finding::error("range-too-wide", place, message, mend));
         }
         return;

@@ -1,5 +1,7 @@
 //! Our element `<realnoid>`: what may stand in it inside `<link>`, `<joint>` and `<robot>`.
 
+#[cfg(test)]
+mod documented;
 pub(super) mod joint;
 pub(super) mod link;
 pub(super) mod robot;

@@ -1,0 +1,61 @@
+//! `realnoid run`: the ROS 2 node.
+
+use super::load::{Loaded, load};
+use crate::description::{Severity, render};
+use crate::ros::{self, Environment, Robot, RosArgs};
+use std::ffi::OsString;
+use std::io::IsTerminal;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Exit code for a command line, parameter file or environment that makes no sense.
+const USAGE: u8 = 2;
+
+/// Parses the arguments that followed `--ros-args`, then as [`run`].
+pub fn start(urdf: Option<&Path>, ros_arguments: Vec<OsString>) -> ExitCode {
+    match RosArgs::parse(ros_arguments) {
+        Ok(args) => run(urdf, args),
+        Err(reason) => fail(&reason, USAGE),
+    }
+}
+
+/// Simulates `urdf` (`None`: the embedded humanoid) as a ROS 2 node until SIGINT or SIGTERM. Exit codes: 0 after a
+/// clean end, 1 if the robot cannot be loaded or ROS not be joined, 2 for wrong arguments, parameters or environment.
+pub fn run(urdf: Option<&Path>, args: RosArgs) -> ExitCode {
+    let ((values, warnings), environment) = match args.values().and_then(|v| Ok((v, Environment::read()?))) {
+        Ok(checked) => checked,
+        Err(reason) => return fail(&reason, USAGE),
+    };
+    let loaded = match load(urdf, values.base()) {
+        Ok(loaded) => loaded,
+        Err(report) => {
+            eprintln!("{}", report.trim_end());
+            return ExitCode::FAILURE;
+        }
+    };
+    warnings.iter().for_each(|w| eprintln!("warning: {w}"));
+    print_findings(&loaded);
+    let robot = Robot {
+        source: loaded.description.file.to_string(),
+        urdf: loaded.published.as_str().into(),
+        model: loaded.model.clone(),
+    };
+    match ros::run(&robot, &args, values, &environment) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => fail(&reason, 1),
+    }
+}
+
+fn fail(reason: &str, code: u8) -> ExitCode {
+    eprintln!("error: {}", reason.trim_end());
+    ExitCode::from(code)
+}
+
+/// Warnings, with their source lines; notes are for `realnoid check`.
+fn print_findings(loaded: &Loaded) {
+    let warnings: Vec<_> = loaded.findings.iter().filter(|f| f.severity > Severity::Note).cloned().collect();
+    if !warnings.is_empty() {
+        let d = &loaded.description;
+        eprint!("{}", render(&warnings, &d.file, &d.text, std::io::stderr().is_terminal()));
+    }
+}

@@ -1,0 +1,213 @@
+//! Checked values of all parameters, and what they mean.
+
+use super::table::{Definition, When, table};
+use crate::model::Base;
+use crate::ros::exchange::Pace;
+use crate::world::{Integrator, Settings};
+use ros2_client::ParameterValue as V;
+
+/// Names of the integrators, in the order of [`integrator`].
+pub(super) const INTEGRATORS: [&str; 2] = ["semi_implicit_euler", "rk4"];
+
+/// Every parameter with a value that its definition accepts.
+#[derive(Clone, Debug)]
+pub struct Values {
+    definitions: Vec<Definition>,
+    values: Vec<V>,
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        let definitions = table();
+        let values = definitions.iter().map(|d| d.default.clone()).collect();
+        Self { definitions, values }
+    }
+}
+
+impl Values {
+    /// Definitions with values, in the order of the table.
+    pub fn iter(&self) -> impl Iterator<Item = (&Definition, &V)> {
+        self.definitions.iter().zip(&self.values)
+    }
+
+    /// Definition and value of `name`.
+    pub fn get(&self, name: &str) -> Option<(&Definition, &V)> {
+        self.iter().find(|(d, _)| d.name == name)
+    }
+
+    /// Sets a parameter before the start. An integer will do for a double. `Err` says what is wrong with it.
+    pub fn set_at_start(&mut self, name: &str, value: V) -> Result<(), String> {
+        let index = self.index(name)?;
+        let definition = &self.definitions[index];
+        if definition.when == When::Never {
+            return Err(format!("parameter '{name}' is read-only"));
+        }
+        let value = widen(value, &definition.default);
+        definition.check(&value)?;
+        self.replace(index, value)
+    }
+
+    /// Sets a parameter of a running node. `Err` says what is wrong with it; nothing has changed then.
+    pub fn set_running(&mut self, name: &str, value: V) -> Result<(), String> {
+        let index = self.index(name)?;
+        let definition = &self.definitions[index];
+        definition.check(&value)?;
+        if definition.when != When::Always && value != self.values[index] {
+            let when = definition.when_text();
+            return Err(format!("parameter '{name}' cannot be set to {} now: {when}", super::show(&value)));
+        }
+        self.replace(index, value)
+    }
+
+    /// The world has the last word on its settings.
+    fn replace(&mut self, index: usize, value: V) -> Result<(), String> {
+        let present = std::mem::replace(&mut self.values[index], value);
+        let checked = self.pace().settings.check();
+        if checked.is_err() {
+            self.values[index] = present;
+        }
+        checked
+    }
+
+    /// Fills in the read-only list of axes.
+    pub fn set_axes(&mut self, names: Vec<String>) {
+        if let Ok(index) = self.index("axes") {
+            self.values[index] = V::StringArray(names);
+        }
+    }
+
+    /// Settings of the world and pace of the loop.
+    pub fn pace(&self) -> Pace {
+        let gravity = match self.value("gravity") {
+            V::DoubleArray(a) if a.len() == 3 => [a[0], a[1], a[2]],
+            _ => Settings::default().gravity,
+        };
+        let settings = Settings {
+            control_interval_ns: (self.double("control_interval") * 1e9).round() as i64,
+            steps_per_interval: self.integer("steps_per_interval") as u32,
+            solver_iterations: self.integer("solver_iterations") as u32,
+            time_scale: self.double("time_scale"),
+            gravity,
+            integrator: integrator(self.text("integrator")),
+        };
+        Pace {
+            settings,
+            real_time_factor: self.double("real_time_factor"),
+            max_catch_up: self.integer("max_catch_up") as u32,
+        }
+    }
+
+    /// Parameter `base`.
+    pub fn base(&self) -> Base {
+        if self.text("base") == "free" { Base::Free } else { Base::Fixed }
+    }
+
+    /// Parameter `start`: do the axes hold their initial position?
+    pub fn hold_at_start(&self) -> bool {
+        self.text("start") == "hold"
+    }
+
+    /// Parameter `allow_mode_switch`.
+    pub fn allow_mode_switch(&self) -> bool {
+        *self.value("allow_mode_switch") == V::Boolean(true)
+    }
+
+    /// Parameter `tf_rate`, Hz.
+    pub fn tf_rate(&self) -> f64 {
+        self.double("tf_rate")
+    }
+
+    /// Parameter `realtime_priority`.
+    pub fn realtime_priority(&self) -> i32 {
+        self.integer("realtime_priority") as i32
+    }
+
+    fn index(&self, name: &str) -> Result<usize, String> {
+        self.definitions.iter().position(|d| d.name == name).ok_or_else(|| {
+            let names: Vec<_> = self.definitions.iter().map(|d| d.name).collect();
+            format!("there is no parameter '{name}'; there are: {}", names.join(", "))
+        })
+    }
+
+    fn value(&self, name: &str) -> &V {
+        self.get(name).map_or(&V::NotSet, |(_, value)| value)
+    }
+
+    // The check has made sure of the types, so the fallbacks below are never used.
+    fn double(&self, name: &str) -> f64 {
+        if let V::Double(d) = self.value(name) { *d } else { f64::NAN }
+    }
+
+    fn integer(&self, name: &str) -> i64 {
+        if let V::Integer(i) = self.value(name) { *i } else { 0 }
+    }
+
+    fn text(&self, name: &str) -> &str {
+        if let V::String(s) = self.value(name) { s } else { "" }
+    }
+}
+
+fn integrator(name: &str) -> Integrator {
+    if name == INTEGRATORS[1] { Integrator::Rk4 } else { Integrator::SemiImplicitEuler }
+}
+
+/// On the command line and in YAML, `1` may stand for `1.0`.
+fn widen(value: V, like: &V) -> V {
+    match (value, like) {
+        (V::Integer(i), V::Double(_)) => V::Double(i as f64),
+        (V::IntegerArray(a), V::DoubleArray(_)) => V::DoubleArray(a.into_iter().map(|i| i as f64).collect()),
+        (value, _) => value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_accepted_by_their_own_definitions() {
+        for (definition, value) in Values::default().iter() {
+            definition.check(value).unwrap();
+        }
+    }
+
+    #[test]
+    fn default_settings_are_those_of_the_world() {
+        assert_eq!(Values::default().pace().settings, Settings::default());
+    }
+
+    #[test]
+    fn a_refusal_names_parameter_value_and_range() {
+        let mut values = Values::default();
+        let reason = values.set_running("steps_per_interval", V::Integer(0)).unwrap_err();
+        assert_eq!(reason, "parameter 'steps_per_interval' = 0 is out of range: 1 … 1000");
+        let reason = values.set_running("time_scale", V::Double(f64::NAN)).unwrap_err();
+        assert!(reason.contains("NaN") && reason.contains("0.0 … 100.0"), "{reason}");
+        let reason = values.set_running("gravity", V::DoubleArray(vec![0.0])).unwrap_err();
+        assert!(reason.contains("3 finite numbers m/s^2"), "{reason}");
+        let reason = values.set_running("gravity", V::DoubleArray(vec![0.0, 0.0, 1e9])).unwrap_err();
+        assert!(reason.contains("gravity z") && reason.contains("1000"), "{reason}");
+        assert!(values.set_running("nonsense", V::Integer(0)).unwrap_err().contains("there is no parameter"));
+        assert_eq!(values.pace().settings, Settings::default());
+    }
+
+    #[test]
+    fn only_the_start_accepts_start_parameters_and_integers_for_doubles() {
+        let mut values = Values::default();
+        values.set_at_start("base", V::String("free".into())).unwrap();
+        assert_eq!(values.base(), Base::Free);
+        assert!(values.set_running("base", V::String("fixed".into())).unwrap_err().contains("at start only"));
+        values.set_at_start("tf_rate", V::Integer(10)).unwrap();
+        assert_eq!(values.tf_rate(), 10.0);
+        assert!(values.set_running("tf_rate", V::Integer(10)).unwrap_err().contains("type double"));
+        assert!(values.set_at_start("axes", V::StringArray(vec![])).unwrap_err().contains("read-only"));
+    }
+
+    #[test]
+    fn every_integrator_has_its_name() {
+        let mut values = Values::default();
+        values.set_running("integrator", V::String("rk4".into())).unwrap();
+        assert_eq!(values.pace().settings.integrator, Integrator::Rk4);
+        assert!(values.set_running("integrator", V::String("rk45".into())).is_err());
+    }
+}

@@ -1,0 +1,88 @@
+//! Frames: parent link → child link, and world → root.
+
+use super::messages::{Header, TFMessage, Time, TransformStamped};
+use crate::math::Pose;
+use crate::model::{Base, Model};
+use crate::world::Snapshot;
+
+/// Name of the frame that does not move.
+pub const WORLD: &str = "world";
+
+/// The tree of frames, in the order of `Model::links`.
+#[derive(Clone, Debug)]
+pub struct Frames(Vec<Frame>);
+
+#[derive(Clone, Debug)]
+struct Frame {
+    name: String,
+    parent: Option<usize>,
+    fixed: bool,
+}
+
+impl Frames {
+    /// Frames of the links of `model`.
+    pub fn new(model: &Model) -> Self {
+        let frame = |l: &crate::model::LinkInfo| Frame {
+            name: l.name.clone(),
+            parent: l.parent,
+            fixed: if l.parent.is_some() { l.fixed } else { model.base == Base::Fixed },
+        };
+        Self(model.links.iter().map(frame).collect())
+    }
+
+    /// Frames whose place in their parent never changes.
+    pub fn fixed(&self, snapshot: &Snapshot) -> TFMessage {
+        self.message(snapshot, true)
+    }
+
+    /// Frames that move, where they are now.
+    pub fn moving(&self, snapshot: &Snapshot) -> TFMessage {
+        self.message(snapshot, false)
+    }
+
+    fn message(&self, snapshot: &Snapshot, fixed: bool) -> TFMessage {
+        let stamp = Time::from_ns(snapshot.stamp_ns);
+        let asked = self.0.iter().zip(&snapshot.link_pose).filter(|(f, _)| f.fixed == fixed);
+        let transforms = asked.map(|(frame, x_wc)| {
+            let (parent, x_pc) = self.in_parent(frame, x_wc, snapshot);
+            TransformStamped {
+                header: Header { stamp, frame_id: parent.into() },
+                child_frame_id: frame.name.clone(),
+                transform: x_pc.into(),
+            }
+        });
+        TFMessage { transforms: transforms.collect() }
+    }
+
+    fn in_parent(&self, frame: &Frame, x_wc: &Pose, snapshot: &Snapshot) -> (&str, Pose) {
+        match frame.parent {
+            Some(parent) => (&self.0[parent].name, snapshot.link_pose[parent].inv_mul(x_wc)),
+            None => (WORLD, *x_wc),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+
+    #[test]
+    fn transforms_are_relative_to_the_parent_and_parted_by_motion() {
+        let frame = |name: &str, parent, fixed| Frame { name: name.into(), parent, fixed };
+        let frames =
+            Frames(vec![frame("root", None, true), frame("arm", Some(0), false), frame("tool", Some(1), true)]);
+        let at = |x, turn| Pose::new(Vec3::new(x, 0.0, 0.0), Vec3::new(0.0, 0.0, turn));
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let tool = at(1.0, quarter) * at(2.0, 0.0);
+        let snapshot = Snapshot { link_pose: vec![at(0.0, 0.0), at(1.0, quarter), tool], ..Snapshot::default() };
+        let moving = frames.moving(&snapshot).transforms;
+        assert_eq!(moving.len(), 1);
+        assert_eq!((moving[0].header.frame_id.as_str(), moving[0].child_frame_id.as_str()), ("root", "arm"));
+        assert!((moving[0].transform.rotation.w - (quarter / 2.0).cos()).abs() < 1e-15);
+        assert!((moving[0].transform.rotation.z - (quarter / 2.0).sin()).abs() < 1e-15);
+        let fixed = frames.fixed(&snapshot).transforms;
+        assert_eq!(fixed[0].header.frame_id, WORLD);
+        assert!((fixed[1].transform.translation.x - 2.0).abs() < 1e-15);
+    }
+}

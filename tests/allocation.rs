@@ -1,0 +1,69 @@
+//! The hot path allocates nothing: a counting allocator watches this thread.
+
+mod support;
+
+use realnoid::cli::load::load;
+use realnoid::model::Base;
+use realnoid::world::{AxisCommand, Integrator, Settings, World};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+// SAFETY: every call goes on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|c| c.set(c.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        COUNT.with(|c| c.set(c.get() + 1));
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn counted(work: impl FnOnce()) -> u64 {
+    let before = COUNT.with(Cell::get);
+    work();
+    COUNT.with(Cell::get) - before
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(counted(|| drop(std::hint::black_box(vec![1u8; 100]))), 2);
+}
+
+/// 1000 steps of the default humanoid with servos, torques, stops and friction, snapshots and new commands: none.
+#[test]
+fn a_thousand_steps_allocate_nothing() {
+    for base in [Base::Fixed, Base::Free] {
+        for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+            let model = load(None, base).unwrap_or_else(|report| panic!("{report}")).model;
+            let settings = Settings { integrator, steps_per_interval: 1, ..Settings::default() };
+            let mut world = World::new(model.clone(), settings).unwrap();
+            let mut snapshot = world.new_snapshot();
+            let mut commands = world.commands().to_vec();
+            let n = counted(|| {
+                for step in 0..1000 {
+                    let axis = step % commands.len();
+                    commands[axis] = if step % 3 == 0 { AxisCommand::servo(0.1) } else { AxisCommand::torque(50.0) };
+                    world.set_commands(&commands).unwrap();
+                    world.advance();
+                    world.write_snapshot(&mut snapshot);
+                }
+                world.reset();
+            });
+            assert_eq!(n, 0, "{base:?} {integrator:?}");
+            assert_eq!(snapshot.stats.steps, 1000);
+        }
+    }
+}

@@ -1,0 +1,192 @@
+"""Starts the node as a user would, and talks to it with real rclpy."""
+
+import os
+
+# Read when an rclpy context is made, and handed on to the node under test.
+os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+os.environ.pop("ROS_LOCALHOST_ONLY", None)
+
+import random
+import signal
+import subprocess
+import threading
+import time
+from pathlib import Path
+
+import pytest
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Log
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.parameter import Parameter
+from rclpy.parameter_client import AsyncParameterClient
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+
+HERE = Path(__file__).parent
+BINARY = Path(os.environ.get("REALNOID_BIN", HERE / "../../target/release/realnoid")).resolve()
+ARM = HERE / "arm.urdf"
+
+STREAM = QoSProfile(depth=20000, reliability=ReliabilityPolicy.RELIABLE)
+LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+ROSOUT = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def nanoseconds(stamp):
+    return stamp.sec * 10**9 + stamp.nanosec
+
+
+def wait_until(condition, timeout=5.0, what="the condition"):
+    """Polls until `condition()` is truthy, and returns it."""
+    deadline = time.monotonic() + timeout
+    while time.monotonic() < deadline:
+        result = condition()
+        if result:
+            return result
+        time.sleep(0.005)
+    raise AssertionError(f"waited {timeout} s in vain for {what}")
+
+
+class Simulator:
+    """The running binary."""
+
+    def __init__(self, *arguments, domain, urdf=ARM, environment=None):
+        command = [str(BINARY), "run"] + ([str(urdf)] if urdf else [])
+        ros = ["--ros-args", *map(str, arguments)] if arguments else []
+        variables = {**os.environ, "ROS_DOMAIN_ID": str(domain), **(environment or {})}
+        self.process = subprocess.Popen(
+            command + ros, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        self.output = self.errors = ""
+
+    def stop(self, by=signal.SIGINT):
+        """Ends the node and insists on a clean exit."""
+        if self.process.poll() is None:
+            self.process.send_signal(by)
+        self.output, self.errors = self.process.communicate(timeout=5)
+        assert self.process.returncode == 0, f"exit code {self.process.returncode}: {self.errors}"
+        return self.output
+
+
+class Probe:
+    """An rclpy node that listens in a thread of its own."""
+
+    def __init__(self, domain):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=domain)
+        self.node = rclpy.create_node("probe", context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.thread = threading.Thread(target=self._spin, daemon=True)
+        self.thread.start()
+
+    def _spin(self):
+        try:
+            self.executor.spin()
+        except ExternalShutdownException:
+            pass
+
+    def listen(self, kind, topic, qos=STREAM):
+        """The list into which the messages come."""
+        messages = []
+        self.node.create_subscription(kind, topic, messages.append, qos)
+        self.executor.wake()
+        return messages
+
+    def publisher(self, kind, topic):
+        """A publisher that the simulator already listens to."""
+        publisher = self.node.create_publisher(kind, topic, 100)
+        wait_until(lambda: publisher.get_subscription_count() > 0, what=f"a subscriber of {topic}")
+        return publisher
+
+    def call(self, start, timeout=5.0):
+        """The result of a service call; `start` is tried twice, because one of a hundred first calls gets lost."""
+        for attempt in range(2):
+            future = start()
+            try:
+                wait_until(future.done, timeout=timeout / 2, what="a service")
+                return future.result()
+            except AssertionError:
+                if attempt:
+                    raise
+
+    def parameters(self, node="forward_dynamics"):
+        client = AsyncParameterClient(self.node, node)
+        assert client.wait_for_services(5.0)
+        return client
+
+    def set(self, client, **values):
+        parameters = [Parameter(name, value=value) for name, value in values.items()]
+        return self.call(lambda: client.set_parameters(parameters)).results
+
+    def get(self, client, name):
+        value = self.call(lambda: client.get_parameters([name])).values[0]
+        return rclpy.parameter.parameter_value_to_python(value)
+
+    def close(self):
+        self.executor.shutdown()
+        self.thread.join(2)
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+
+class Bench:
+    """A simulator and a probe in a domain of their own, with the streams that most tests look at."""
+
+    def __init__(self, *arguments, topic="joint_states", **options):
+        self.domain = random.randint(0, 101)
+        self.probe = Probe(self.domain)
+        self.states = self.probe.listen(JointState, topic)
+        self.diagnostics = self.probe.listen(DiagnosticArray, "/diagnostics")
+        self.log = self.probe.listen(Log, "/rosout", ROSOUT)
+        self.simulator = Simulator(*arguments, domain=self.domain, **options)
+
+    def wait_for_first_sample(self):
+        wait_until(lambda: self.states or self.simulator.process.poll() is not None, what="the first JointState")
+        assert self.states, self.simulator.process.communicate()[1]
+        return self
+
+    def axis(self, name):
+        """Latest (position, velocity, effort) of an axis."""
+        state = self.states[-1]
+        i = state.name.index(name)
+        return state.position[i], state.velocity[i], state.effort[i]
+
+    def count(self, part, key):
+        """A figure of the latest diagnostics, as text; None before the first."""
+        if not self.diagnostics:
+            return None
+        for status in self.diagnostics[-1].status:
+            if status.name.endswith(part):
+                return {v.key: v.value for v in status.values}[key]
+        raise KeyError(part)
+
+    def logged(self, text):
+        return [m.msg for m in self.log if m.name.endswith("forward_dynamics") and text in m.msg]
+
+    def close(self):
+        try:
+            return self.simulator.stop()
+        finally:
+            self.simulator.process.kill()
+            self.probe.close()
+
+
+@pytest.fixture
+def start():
+    """Starts benches; each is stopped by SIGINT at the end, and must exit with 0."""
+    benches = []
+
+    def starter(*arguments, **options):
+        benches.append(Bench(*arguments, **options))
+        return benches[-1].wait_for_first_sample()
+
+    yield starter
+    for bench in benches:
+        bench.close()
+
+
+@pytest.fixture
+def bench(start):
+    """The arm with default parameters."""
+    return start()
