@@ -10,6 +10,7 @@ use crate::model::{Base, EFFECT_NAMES, Model};
 use crate::record::{Format, Recorder, Sample};
 use crate::world::{AxisCommand, Settings, World};
 use serde_json::json;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -30,7 +31,8 @@ pub fn run(args: &SimulateArgs) -> ExitCode {
     };
     match plan.run() {
         Ok(summary) => {
-            println!("{summary:#}");
+            // A reader that has gone away (`| head`) is no failure of the run.
+            let _ = writeln!(std::io::stdout(), "{summary:#}");
             let complete = summary["finite"] == true && summary["stopped"] == false;
             if complete { ExitCode::SUCCESS } else { ExitCode::FAILURE }
         }
@@ -228,21 +230,23 @@ fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, St
 
 fn set_commands(args: &SimulateArgs, world: &mut World) -> Result<(), String> {
     let model = world.model().clone();
-    let (mut commands, mut given_to) = (world.commands().to_vec(), Vec::new());
-    let torque = AxisCommand::torque as fn(f64) -> AxisCommand;
-    let given = args.effort.iter().map(|t| ("--effort", "AXIS=TORQUE", t, torque));
-    let given =
-        given.chain(args.servo.iter().map(|t| ("--servo", "AXIS=POSITION", t, AxisCommand::servo as fn(f64) -> _)));
-    for (flag, form, text, command) in given {
+    let (mut commands, mut taken) = (world.commands().to_vec(), Vec::new());
+    let (torque, servo) = (AxisCommand::torque as fn(f64) -> AxisCommand, AxisCommand::servo as fn(f64) -> AxisCommand);
+    let efforts = args.effort.iter().map(|text| ("--effort", "AXIS=TORQUE", text, torque));
+    let servos = args.servo.iter().map(|text| ("--servo", "AXIS=POSITION", text, servo));
+    for (flag, form, text, command) in efforts.chain(servos) {
         let (name, values) = assignment(flag, form, text)?;
         let [value] = values[..] else { return Err(format!("{flag} {text}: must be {form}")) };
         let axis = axis(&model, flag, name)?;
-        if given_to.contains(&axis) {
-            return Err(format!(
-                "{flag} {text}: axis '{name}' already has a command; give one --effort or one --servo"
-            ));
+        let wrong = |reason: &str| Err(format!("{flag} {text}: axis '{name}' {reason}"));
+        if taken.contains(&axis) {
+            return wrong("already has a command; give it one --effort or one --servo");
         }
-        given_to.push(axis);
+        let drive = &model.axes[axis];
+        if !drive.switchable && drive.mode != command(value).mode {
+            return wrong("has a drive that stays in its mode; its tag can allow the change with switchable=\"true\"");
+        }
+        taken.push(axis);
         commands[axis] = command(value);
     }
     world.set_commands(&commands).map_err(|axis| format!("the command of axis {axis} is not sound"))
