@@ -52,7 +52,7 @@ pub struct InspectArgs {
     /// fixed (on a test stand) or free.
     #[arg(long, default_value = "fixed", value_parser = ["fixed", "free"])]
     pub base: String,
-    /// The URDF with an exact <inertial> in every link whose mass comes from our tag, for tools that do not read it.
+    /// The URDF with an exact `<inertial>` in every link whose mass comes from our tag, for tools that do not read it.
     #[arg(long, conflicts_with = "json")]
     pub urdf_with_inertials: bool,
 }

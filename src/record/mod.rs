@@ -78,7 +78,7 @@ pub struct Recorder {
 
 enum Writer {
     Csv(CsvWriter<File>),
-    Bag(BagWriter<BufWriter<File>>),
+    Bag(Box<BagWriter<BufWriter<File>>>),
 }
 
 impl Recorder {
@@ -94,7 +94,7 @@ impl Recorder {
         place.forget_earlier_bag().map_err(failed)?;
         let writer = match format {
             Format::Csv => Writer::Csv(CsvWriter::new(file, model).map_err(failed)?),
-            Format::Mcap => Writer::Bag(BagWriter::new(BufWriter::new(file), model).map_err(failed)?),
+            Format::Mcap => Writer::Bag(Box::new(BagWriter::new(BufWriter::new(file), model).map_err(failed)?)),
         };
         Ok(Self { path: path.to_owned(), place, writer })
     }
