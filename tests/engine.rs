@@ -98,6 +98,41 @@ fn orders_of_the_integrators() {
     }
 }
 
+/// Axes that stand still (in their friction, on their stop) do not cost RK4 its order: no step falls back.
+#[test]
+fn standing_axes_keep_the_order() {
+    let joints = [JointType::Spherical, JointType::Revolute, JointType::Universal, JointType::Revolute];
+    let mut m = tree(&joints, true, 12);
+    m.axes[0].friction = 1e3;
+    (m.axes[1].lower, m.axes[1].upper) = (0.3, 0.3 + 1e-9);
+    (m.effects.friction, m.effects.limits) = (true, true);
+    let (q, v) = state(&m, &mut Random(1), 0.7);
+    let mut start = State { q, v, angles: vec![] };
+    start.set_axis(&m, 0, 0.4, 0.0);
+    // A heavy limb leans on this stop during the whole second, in whichever direction it leans.
+    start.set_axis(&m, 1, 0.3, 0.0);
+    m.axes[1].friction = 1e3;
+    let end = |steps: u32| {
+        let mut w = world(&m, settings(Integrator::Rk4, 0.01, steps));
+        w.set_initial_state(start.clone());
+        run(&mut w, 1.0);
+        assert_eq!(
+            (w.stats().fallback_steps, w.state().axis(&m, 0), w.state().axis(&m, 1)),
+            (0, (0.4, 0.0), (0.3, 0.0))
+        );
+        w.state().clone()
+    };
+    let reference = end(128);
+    let errors: Vec<f64> = (0..4)
+        .map(|k| {
+            let s = end(2 << k);
+            let d = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum::<f64>();
+            (d(&s.q, &reference.q) + d(&s.v, &reference.v)).sqrt()
+        })
+        .collect();
+    assert!(slope(&errors) >= 3.9, "{errors:?}");
+}
+
 /// RK4 at 1 ms keeps the energy of a fixed chain and the momentum of a free one to its truncation error.
 #[test]
 fn conservation() {

@@ -7,8 +7,10 @@
 use super::DofIn;
 use super::articulated::{Acc, Art, Spatial};
 use super::ball::{Ball, BallIn, eliminate_ball, eliminate_floating};
-use super::joint::{bias, joint_transform, joint_velocity, universal_axis};
-use crate::math::{Fma, M3, Real, S3, V3};
+use super::crba::Composite;
+use super::eliminate::{eliminate_axis, eliminate_linear_z, revolute, revolute_root};
+use super::joint::{bias, joint_transform, joint_velocity, turned_z, universal_axis};
+use crate::math::{Fma, M3, Real, V3};
 use crate::model::{AxisSlot, Body, JointType, Model};
 
 /// Frame and motion of a body; its velocity gives way to its acceleration in the last pass.
@@ -39,6 +41,7 @@ pub struct Workspace<T> {
     pub(crate) acc: Vec<Acc<T>>,
     pub(crate) dof: Vec<Dof<T>>,
     pub(crate) balls: Vec<Ball<T>>,
+    pub(crate) composite: Vec<Composite<T>>,
     /// Inputs of the hybrid dynamics, one per velocity.
     pub dofs: Vec<DofIn<T>>,
     /// Inputs of the hybrid dynamics, one per spherical joint.
@@ -57,6 +60,7 @@ impl<T: Real> Workspace<T> {
             acc: vec![Acc::default(); n],
             dof: vec![Dof::default(); nv],
             balls: vec![Ball::default(); model.balls],
+            composite: vec![Composite::default(); n],
             dofs: vec![DofIn::free(o); nv],
             ball_in: vec![BallIn::default(); model.balls],
             reaction: vec![o; nv],
@@ -64,7 +68,7 @@ impl<T: Real> Workspace<T> {
     }
 
     /// Acceleration per torque of an axis in the last solve, with what hangs on it free and its base held: 1/D of the
-    /// articulated inertia, an upper bound of how fast a viscous term on it can be.
+    /// articulated inertia. With a free base it accelerates more.
     pub fn mobility(&self, m: &Model, axis: usize) -> T {
         match m.axes[axis].slot {
             AxisSlot::Scalar { v, .. } => self.dof[v].d,
@@ -146,7 +150,12 @@ fn kernel<T: Real, const HYBRID: bool>(
     gravity: [f64; 3],
     qdd: &mut [T],
 ) {
-    velocities(m, ws, q, v);
+    ws.kin[0] = Kin { r: M3::identity(), ..Kin::default() };
+    for (i, b) in m.bodies.iter().enumerate().skip(1) {
+        let kin = moved(b, q, v, &ws.kin[b.parent]);
+        ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
+        ws.kin[i] = kin;
+    }
     for i in (1..m.bodies.len()).rev() {
         inward::<T, HYBRID>(m, ws, i, (q, v), tau);
     }
@@ -156,20 +165,27 @@ fn kernel<T: Real, const HYBRID: bool>(
     }
 }
 
-/// First pass: frames and velocities, from the world outwards; clears what the second pass sums into.
+/// First pass: frames and velocities, from the world outwards.
 #[inline(always)]
 pub(crate) fn velocities<T: Real>(m: &Model, ws: &mut Workspace<T>, q: &[T], v: &[T]) {
     ws.kin[0] = Kin { r: M3::identity(), ..Kin::default() };
-    for i in 1..m.bodies.len() {
-        let b = &m.bodies[i];
-        let (r, p) = joint_transform(b, q);
-        let own = joint_velocity(b, q, v);
-        let parent = ws.kin[b.parent];
-        let w = r.tv(parent.w) + own.a;
-        let l = r.tv(parent.w.cross_add(p, parent.v)) + own.l;
-        ws.kin[i] = Kin { r, w, v: l };
-        ws.acc[i] = Acc::default();
+    for (i, b) in m.bodies.iter().enumerate().skip(1) {
+        ws.kin[i] = moved(b, q, v, &ws.kin[b.parent]);
     }
+}
+
+/// Frame and velocity of a body, given its parent's.
+#[inline(always)]
+fn moved<T: Real>(b: &Body, q: &[T], v: &[T], parent: &Kin<T>) -> Kin<T> {
+    if b.joint == JointType::Revolute {
+        let r = turned_z(&M3::of(&b.tree_r), q[b.q].sin_cos());
+        let mut w = r.tv(parent.w);
+        w.z += v[b.v];
+        return Kin { r, w, v: r.tv(parent.w.cross_add(V3::of(b.tree_p), parent.v)) };
+    }
+    let (r, p) = joint_transform(b, q);
+    let own = joint_velocity(b, q, v);
+    Kin { r, w: r.tv(parent.w) + own.a, v: r.tv(parent.w.cross_add(p, parent.v)) + own.l }
 }
 
 /// Second pass, one body: eliminate its joint, hand what remains to the parent.
@@ -178,7 +194,6 @@ fn inward<T: Real, const HYBRID: bool>(m: &Model, ws: &mut Workspace<T>, i: usiz
     let b = &m.bodies[i];
     let kin = ws.kin[i];
     let mut k = ws.acc[i];
-    k.add_rigid(b, kin.w, kin.v);
     if b.joint == JointType::Floating {
         let t = |n: usize| if HYBRID { ws.dofs[b.v + n].tau } else { tau[b.v + n] };
         let own = [t(0), t(1), t(2), t(3), t(4), t(5)];
@@ -186,16 +201,18 @@ fn inward<T: Real, const HYBRID: bool>(m: &Model, ws: &mut Workspace<T>, i: usiz
         hand_over_floating(m, ws, i, own, q);
         return;
     }
+    if b.joint == JointType::Revolute && (!HYBRID || ws.dofs[b.v].plain) {
+        let t = if HYBRID { ws.dofs[b.v].tau } else { tau[b.v] };
+        if b.parent == 0 {
+            revolute_root(&k, (&mut ws.dof[b.v], t));
+        } else {
+            let given = revolute(&k, b, &kin, v[b.v], (&mut ws.dof[b.v], t));
+            ws.acc[b.parent].add(&given);
+        }
+        return;
+    }
     let c = bias(b, q, v, (kin.w, kin.v));
     match b.joint {
-        JointType::Revolute if !HYBRID || ws.dofs[b.v].plain => {
-            let t = if HYBRID { ws.dofs[b.v].tau } else { tau[b.v] };
-            let given = revolute(&k, &kin.r, V3::of(b.tree_p), c, (&mut ws.dof[b.v], t));
-            if b.parent != 0 {
-                ws.acc[b.parent].add(&given);
-            }
-            return;
-        }
         JointType::Revolute => eliminate_axis(&mut k, axis_z(), &mut ws.dof[b.v], &ws.dofs[b.v]),
         JointType::Prismatic => {
             let input = scalar_input::<T, HYBRID>(ws, tau, b.v);
@@ -244,8 +261,18 @@ fn outward<T: Real, const HYBRID: bool>(
 ) {
     let b = &m.bodies[i];
     let kin = ws.kin[i];
-    let c = bias(b, q, v, (kin.w, kin.v));
     let parent = ws.kin[b.parent];
+    if b.joint == JointType::Revolute {
+        let s = v[b.v];
+        let mut a = kin.r.tv(parent.w);
+        let mut l = kin.r.tv(parent.w.cross_add(V3::of(b.tree_p), parent.v));
+        (a.x, a.y) = (kin.w.y.mad(s, a.x), (-kin.w.x).mad(s, a.y));
+        (l.x, l.y) = (kin.v.y.mad(s, l.x), (-kin.v.x).mad(s, l.y));
+        a.z += scalar_out::<T, HYBRID>(ws, b.v, (a, l), qdd);
+        (ws.kin[i].w, ws.kin[i].v) = (a, l);
+        return;
+    }
+    let c = bias(b, q, v, (kin.w, kin.v));
     let p = joint_transform_p(b, q);
     let mut a = kin.r.tv(parent.w) + c.a;
     let mut l = kin.r.tv(parent.w.cross_add(p, parent.v)) + c.l;
@@ -313,75 +340,4 @@ fn axis_z<T: Real>() -> V3<T> {
 #[inline(always)]
 fn scalar_input<T: Real, const HYBRID: bool>(ws: &Workspace<T>, tau: &[T], k: usize) -> DofIn<T> {
     if HYBRID { ws.dofs[k] } else { DofIn::free(tau[k]) }
-}
-
-/// Eliminates a rotation about `s`, a direction in the child frame.
-#[inline(always)]
-fn eliminate_axis<T: Real>(k: &mut Acc<T>, s: V3<T>, d: &mut Dof<T>, input: &DofIn<T>) {
-    let (ua, ul) = (k.ia.j.mv(s), k.ia.h.tv(s));
-    finish(k, (ua, ul), (s.dot(ua), s.dot(k.n)), d, input);
-}
-
-/// Eliminates a translation along z.
-#[inline(always)]
-fn eliminate_linear_z<T: Real>(k: &mut Acc<T>, d: &mut Dof<T>, input: &DofIn<T>) {
-    let (ua, ul) = (k.ia.h.col2(), k.ia.m.row2());
-    finish(k, (ua, ul), (ul.z, k.f.z), d, input);
-}
-
-/// `own` is S·U and S·p.
-#[inline(always)]
-fn finish<T: Real>(k: &mut Acc<T>, (ua, ul): (V3<T>, V3<T>), own: (T, T), d: &mut Dof<T>, input: &DofIn<T>) {
-    let (inertia, force) = own;
-    let di = input.free / (inertia + input.diagonal);
-    let locked = (T::of(1.0) - input.free) * input.acceleration;
-    let x = di.mad(input.tau - force, locked);
-    *d = Dof { ua, ul, d: di, x, own: inertia.mad(locked, force) };
-    k.ia.eliminate(ua, ul, di);
-    k.n += ua * x;
-    k.f += ul * x;
-}
-
-/// Eliminates a free rotation about z without added inertia, and moves to the parent. The row and column of J that belong
-/// to z vanish, and so does H's row: they are left out.
-#[inline(always)]
-fn revolute<T: Real>(k: &Acc<T>, r: &M3<T>, p: V3<T>, c: Spatial<T>, (d, tau): (&mut Dof<T>, T)) -> Acc<T> {
-    let Art { j, h, mut m } = k.ia;
-    let (ua, ul) = (j.row2(), h.r[2]);
-    let di = T::of(1.0) / ua.z;
-    let x = (tau - k.n.z) * di;
-    *d = Dof { ua, ul, d: di, x, own: k.n.z };
-    let (ax, ay, l) = (ua.x * di, ua.y * di, ul * di);
-    let (jxx, jxy, jyy) = ((-ax).mad(ua.x, j.xx), (-ax).mad(ua.y, j.xy), (-ay).mad(ua.y, j.yy));
-    let (h0, h1) = (ul.mad(-ax, h.r[0]), ul.mad(-ay, h.r[1]));
-    m.sub_outer(l, ul);
-    let (cx, cy) = (c.a.x, c.a.y);
-    let nx = ua.x.mad(x, jxx.mad(cx, jxy.mad(cy, h0.dot(c.l) + k.n.x)));
-    let ny = ua.y.mad(x, jxy.mad(cx, jyy.mad(cy, h1.dot(c.l) + k.n.y)));
-    let f = ul.mad(x, h0.mad(cx, h1.mad(cy, m.mv(c.l) + k.f)));
-    let (g0, g1) = (r.mv(h0), r.mv(h1));
-    let turned = Art { j: flat_rotated(r, jxx, jxy, jyy), h: outer2(r, g0, g1), m: m.rotated(r) };
-    let f = r.mv(f);
-    Acc { ia: turned.moved(p), f, n: p.cross_add(f, r.mv(V3::new(nx, ny, tau))) }
-}
-
-/// `R J Rᵀ` of a J whose z row and column are zero.
-#[inline(always)]
-fn flat_rotated<T: Real>(r: &M3<T>, xx: T, xy: T, yy: T) -> S3<T> {
-    let (c0, c1) = (r.col0(), r.col1());
-    let (a, b) = (c1.mad(xy, c0 * xx), c1.mad(yy, c0 * xy));
-    S3 {
-        xx: a.x.mad(c0.x, b.x * c1.x),
-        xy: a.x.mad(c0.y, b.x * c1.y),
-        xz: a.x.mad(c0.z, b.x * c1.z),
-        yy: a.y.mad(c0.y, b.y * c1.y),
-        yz: a.y.mad(c0.z, b.y * c1.z),
-        zz: a.z.mad(c0.z, b.z * c1.z),
-    }
-}
-
-/// `R [g0; g1; 0]` where the rows are already turned.
-#[inline(always)]
-fn outer2<T: Real>(r: &M3<T>, g0: V3<T>, g1: V3<T>) -> M3<T> {
-    M3::rows(g0.mad(r.r[0].x, g1 * r.r[0].y), g0.mad(r.r[1].x, g1 * r.r[1].y), g0.mad(r.r[2].x, g1 * r.r[2].y))
 }

@@ -38,25 +38,15 @@ impl<T: Real> Acc<T> {
         self.f += o.f;
     }
 
-    /// Adds a rigid body's own inertia and its velocity-dependent bias `v ×* I v`.
+    /// A rigid body's own inertia and its velocity-dependent bias `v ×* I v`.
     #[inline(always)]
-    pub fn add_rigid(&mut self, b: &Body, w: V3<T>, v: V3<T>) {
-        let (m, mc, j) = (T::of(b.mass), V3::of(b.mc), S3::of(&b.inertia));
-        self.ia.j += j;
-        self.ia.h.r[0].y -= mc.z;
-        self.ia.h.r[0].z += mc.y;
-        self.ia.h.r[1].x += mc.z;
-        self.ia.h.r[1].z -= mc.x;
-        self.ia.h.r[2].x -= mc.y;
-        self.ia.h.r[2].y += mc.x;
-        self.ia.m.xx += m;
-        self.ia.m.yy += m;
-        self.ia.m.zz += m;
-        let linear = w.cross(mc);
-        let p = v.mad(m, linear);
+    pub fn rigid(b: &Body, w: V3<T>, v: V3<T>) -> Self {
+        let (o, m, mc, j) = (T::of(0.0), T::of(b.mass), V3::<T>::of(b.mc), S3::of(&b.inertia));
+        let h = M3::rows(V3::new(o, -mc.z, mc.y), V3::new(mc.z, o, -mc.x), V3::new(-mc.y, mc.x, o));
+        let ia = Art { j, h, m: S3 { xx: m, xy: o, xz: o, yy: m, yz: o, zz: m } };
+        let turning = w.cross(mc);
         let angular = mc.cross_add(v, j.mv(w));
-        self.n = w.cross_add(angular, v.cross_add(linear, self.n));
-        self.f = w.cross_add(p, self.f);
+        Self { ia, n: w.cross_add(angular, v.cross(turning)), f: w.cross(v.mad(m, turning)) }
     }
 
     /// Adds `IA·a` to the bias.

@@ -9,6 +9,7 @@ mod articulated;
 mod ball;
 mod check;
 mod crba;
+mod eliminate;
 mod energy;
 mod integrate;
 mod joint;

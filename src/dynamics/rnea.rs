@@ -1,7 +1,7 @@
 //! Inverse dynamics: recursive Newton–Euler (Featherstone 2008, §5.3), O(n).
 
 use super::aba::{Kin, Workspace, joint_transform_p, velocities};
-use super::articulated::{Acc, Spatial};
+use super::articulated::Spatial;
 use super::joint::{bias, universal_axis};
 use crate::math::{M3, Real, S3, V3};
 use crate::model::{Body, JointType, Model};
@@ -56,12 +56,13 @@ fn outward<T: Real>(m: &Model, ws: &mut Workspace<T>, i: usize, (q, v): (&[T], &
 /// `I a + v ×* I v`.
 #[inline(always)]
 fn body_force<T: Real>(b: &Body, (w, v): (V3<T>, V3<T>), a: Spatial<T>) -> Spatial<T> {
-    let mut bias = Acc::default();
-    bias.add_rigid(b, w, v);
-    let (m, mc) = (T::of(b.mass), V3::of(b.mc));
-    let angular = mc.cross_add(a.l, S3::of(&b.inertia).mv(a.a));
-    let linear = a.a.cross_add(mc, a.l * m);
-    Spatial { a: bias.n + angular, l: bias.f + linear }
+    let (m, mc, j) = (T::of(b.mass), V3::of(b.mc), S3::of(&b.inertia));
+    let turning = w.cross(mc);
+    let angular = mc.cross_add(v, j.mv(w));
+    Spatial {
+        a: w.cross_add(angular, v.cross_add(turning, mc.cross_add(a.l, j.mv(a.a)))),
+        l: w.cross_add(v.mad(m, turning), a.a.cross_add(mc, a.l * m)),
+    }
 }
 
 /// Projects the force on the joint's directions and hands it to the parent.

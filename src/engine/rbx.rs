@@ -1,6 +1,6 @@
 //! rbx: reduced coordinates, one step at a time.
 
-use crate::dynamics::{Workspace, aba, coordinate_rates, exponential_step, normalize};
+use crate::dynamics::{Workspace, aba_hybrid, coordinate_rates, exponential_step, normalize};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef};
@@ -11,8 +11,9 @@ pub enum Integrator {
     /// First order; damping, servos, stops and friction implicit. The default.
     #[default]
     SemiImplicitEuler,
-    /// Classical fourth order; steps in which a stop, dry friction at rest or a servo at its target acts, or a viscous
-    /// term is stiffer than the step, are made by the default instead, and counted.
+    /// Classical fourth order; axes that stand still stand. Steps in which an axis begins or ceases to stand (in its dry
+    /// friction, at a stop, at a servo's target), a servo is on its way, or a viscous term is stiffer than the step, are
+    /// made by the default instead, and counted.
     Rk4,
 }
 
@@ -189,7 +190,6 @@ pub struct StepReport {
 #[derive(Clone, Debug, Default)]
 struct Stages {
     start: State,
-    tau: Vec<f64>,
     rates: Vec<f64>,
     sum_q: Vec<f64>,
     sum_v: Vec<f64>,
@@ -226,7 +226,6 @@ impl Rbx {
     pub fn prepare(&mut self, m: &Model, integrator: Integrator) {
         self.stages = (integrator == Integrator::Rk4).then(|| Stages {
             start: self.state.clone(),
-            tau: vec![0.0; m.nv],
             rates: vec![0.0; m.nq],
             sum_q: vec![0.0; m.nq],
             sum_v: vec![0.0; m.nv],
@@ -262,6 +261,9 @@ impl Rbx {
 
     /// Quaternions are integrated as four numbers and made unit again at the end, which keeps the order.
     fn rk4(&mut self, m: &Model, s: &StepSettings) -> bool {
+        if !self.axes.is_smooth() {
+            return false;
+        }
         let Some(mut st) = self.stages.take() else { return false };
         let smooth = self.rk4_stages(m, s, &mut st);
         self.stages = Some(st);
@@ -282,9 +284,9 @@ impl Rbx {
                 }
                 self.state.read_angles(m);
             }
-            self.axes.smooth_torques(m, self.state.as_ref(), &mut st.tau);
-            aba(m, &mut self.ws, (&self.state.q, &self.state.v), &st.tau, s.gravity, &mut self.qdd);
-            if stage == 0 && !self.axes.is_smooth(m, &self.ws, s.h) {
+            self.axes.write_smooth(m, &mut self.ws, self.state.as_ref());
+            aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), s.gravity, &mut self.qdd);
+            if !self.axes.stage_fits(m, &self.ws, s.h) {
                 return false;
             }
             coordinate_rates(m, &self.state.q, &self.state.v, &mut st.rates);
@@ -302,7 +304,7 @@ impl Rbx {
         if !self.axes.stayed_smooth(m, self.state.as_ref()) {
             return false;
         }
-        self.axes.finish_smooth(m, self.state.as_ref());
+        self.axes.finish_smooth(m, &self.ws, self.state.as_ref());
         true
     }
 }

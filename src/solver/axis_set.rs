@@ -5,7 +5,7 @@
 //! that do not fit move at once while that helps; else only the last of them (block principal pivoting with Murty's rule
 //! as the fallback; Júdice and Pires 1994), which ends because the mass matrix is positive definite.
 
-use super::law::{LOWER, Law, UPPER, law};
+use super::law::{Law, law};
 use super::{AxisCommand, AxisInput};
 use crate::dynamics::{BallLock, DofIn, Workspace, aba_hybrid};
 use crate::math::V3;
@@ -39,14 +39,14 @@ pub struct StateRef<'a> {
 /// Laws and places of all axes. Makes its memory once.
 #[derive(Clone, Debug)]
 pub struct AxisSet {
-    laws: Vec<Law>,
+    pub(super) laws: Vec<Law>,
     /// Per axis: 2 j on flat j, 2 k + 1 on riser k.
-    place: Vec<usize>,
+    pub(super) place: Vec<usize>,
     /// Kinds of the riser an axis stood on at the end of the last step; 0 = it slid.
-    memory: Vec<u8>,
+    pub(super) memory: Vec<u8>,
     moves: Vec<isize>,
-    rates: Vec<EulerRates>,
-    speed: Vec<f64>,
+    pub(super) rates: Vec<EulerRates>,
+    pub(super) speed: Vec<f64>,
     /// Per axis: drive torque really applied.
     pub effort: Vec<f64>,
 }
@@ -91,7 +91,7 @@ impl AxisSet {
         matches!(axis.slot, AxisSlot::Euler { group, angle: 0 } if self.rates[group].at_pole)
     }
 
-    fn axis_state(&self, m: &Model, axis: &Axis, s: StateRef) -> (f64, f64) {
+    pub(super) fn axis_state(&self, m: &Model, axis: &Axis, s: StateRef) -> (f64, f64) {
         match axis.slot {
             AxisSlot::Scalar { q, v } => (s.q[q], s.v[v]),
             AxisSlot::Euler { group, angle } => {
@@ -130,56 +130,7 @@ impl AxisSet {
         }
     }
 
-    /// True if no axis stands on a riser and no viscous term is stiffer than `1/h`: then the laws are smooth functions
-    /// of the state and an explicit method may take the step.
-    pub fn is_smooth(&self, m: &Model, ws: &Workspace<f64>, h: f64) -> bool {
-        (0..self.laws.len()).all(|i| {
-            let law = &self.laws[i];
-            self.place[i].is_multiple_of(2) && (law.slope == 0.0 || law.slope * h * ws.mobility(m, i) < 1.0)
-        })
-    }
-
-    /// True if after an explicit step every axis is still on the flat it was on, and inside its stops.
-    pub fn stayed_smooth(&mut self, m: &Model, s: StateRef) -> bool {
-        self.update_rates(m, s);
-        (0..self.laws.len()).all(|i| {
-            let (q, v) = self.axis_state(m, &m.axes[i], s);
-            let (law, axis) = (&self.laws[i], &m.axes[i]);
-            let inside = law.stopless() || (q > axis.lower && q < axis.upper);
-            inside && law.step_without_stops(self.place[i], v) == 0
-        })
-    }
-
-    /// Torques (nv) of the laws at a state, every axis on its flat.
-    pub fn smooth_torques(&mut self, m: &Model, s: StateRef, tau: &mut [f64]) {
-        self.update_rates(m, s);
-        tau.fill(0.0);
-        for (i, axis) in m.axes.iter().enumerate() {
-            let (_, v) = self.axis_state(m, axis, s);
-            let torque = self.laws[i].flat(self.place[i] / 2) - self.laws[i].slope * v;
-            match axis.slot {
-                AxisSlot::Scalar { v: k, .. } => tau[k] = torque,
-                AxisSlot::Euler { group, angle } => {
-                    let g = self.rates[group].gradient[angle] * torque;
-                    let at = m.eulers[group].v;
-                    tau[at] += g.x;
-                    tau[at + 1] += g.y;
-                    tau[at + 2] += g.z;
-                }
-            }
-        }
-    }
-
-    /// Ends an explicit step: remembers that every axis slides, writes the efforts.
-    pub fn finish_smooth(&mut self, m: &Model, s: StateRef) {
-        for (i, axis) in m.axes.iter().enumerate() {
-            let (_, v) = self.axis_state(m, axis, s);
-            self.memory[i] = 0;
-            self.effort[i] = self.laws[i].drive_torque(v, None);
-        }
-    }
-
-    fn update_rates(&mut self, m: &Model, s: StateRef) -> bool {
+    pub(super) fn update_rates(&mut self, m: &Model, s: StateRef) -> bool {
         let mut at_pole = false;
         for (rates, (group, angles)) in self.rates.iter_mut().zip(m.eulers.iter().zip(s.angles)) {
             *rates = group.rates(*angles);
@@ -239,7 +190,7 @@ impl AxisSet {
     }
 
     /// Locks stand in the order of the axes, so this axis' lock is counted by the locked ones before it.
-    fn group_reaction(&self, m: &Model, ws: &Workspace<f64>, i: usize, group: usize) -> f64 {
+    pub(super) fn group_reaction(&self, m: &Model, ws: &Workspace<f64>, i: usize, group: usize) -> f64 {
         let same = |a: &Axis| matches!(a.slot, AxisSlot::Euler { group: g, .. } if g == group);
         let before = (0..i).filter(|&k| same(&m.axes[k]) && self.place[k] % 2 == 1).count();
         ws.ball_in[m.bodies[m.eulers[group].body].ball].lock[before.min(2)].reaction
@@ -297,16 +248,8 @@ impl Law {
         }
     }
 
-    /// [`Law::step`] of a flat at speed `v`, where stops are checked by position.
-    fn step_without_stops(&self, place: usize, v: f64) -> isize {
-        let k = place / 2;
-        let below = k > 0 && self.risers[k - 1].kinds & (LOWER | UPPER) == 0 && v <= self.risers[k - 1].speed;
-        let above = k < self.count && self.risers[k].kinds & (LOWER | UPPER) == 0 && v >= self.risers[k].speed;
-        isize::from(above) - isize::from(below)
-    }
-
     /// To which side the solution leaves this part of the law: −1 left, 0 not at all, +1 right.
-    fn step(&self, place: usize, v: f64, torque: f64) -> isize {
+    pub(super) fn step(&self, place: usize, v: f64, torque: f64) -> isize {
         let k = place / 2;
         if place % 2 == 1 {
             let r = &self.risers[k];

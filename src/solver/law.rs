@@ -23,6 +23,9 @@ pub const SERVO_TIME: f64 = 0.05;
 /// Speeds nearer than this are one riser, rad/s or m/s.
 const SAME: f64 = 1e-12;
 
+/// An axis this near to its stop touches it: rounding of the step that brought it there; rad or m, relative.
+const AT_STOP: f64 = 1e-14;
+
 /// What a riser is made of, as bits.
 pub(super) const FRICTION: u8 = 1;
 pub(super) const SERVO: u8 = 2;
@@ -119,8 +122,13 @@ impl Law {
 
     /// A stop is reached exactly at the end of the step; a penetrated one is left by [`STOP_ERP`].
     fn stops(&mut self, input: &AxisInput, h: f64) {
-        let room = |gap: f64| if gap >= 0.0 { gap / h } else { STOP_ERP * gap / h };
         let axis = input.axis;
+        let touching = AT_STOP * (1.0 + input.q.abs());
+        let room = |gap: f64| match gap {
+            _ if gap.abs() <= touching => 0.0,
+            _ if gap > 0.0 => gap / h,
+            _ => STOP_ERP * gap / h,
+        };
         if axis.lower.is_finite() {
             self.insert(-room(input.q - axis.lower), 0.0, LOWER);
         }
