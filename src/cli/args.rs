@@ -32,12 +32,15 @@ pub enum Command {
     /// Links, masses, inertias, axes, and the effects that the scene calls for.
     Inspect(InspectArgs),
     /// Simulates without ROS, as fast as it goes; a JSON summary to standard output.
+    ///
+    /// Exit code 0: every value is finite. 1: one is not, the run was stopped by a signal, or a file cannot be read or
+    /// written. 2: an argument is wrong. Whatever ends a run but a full disk, the file is complete.
     Simulate(Box<SimulateArgs>),
     /// Time per call of kinematics, rnea, crba, aba and step: medians, thread CPU time.
     Bench(BenchArgs),
     /// Forward dynamics of single states, to compare with other programs: one JSON object per line on standard input
-    /// {"position": [..], "velocity": [..], "effort": [..], "base_pose": [x,y,z,qx,qy,qz,qw], "base_twist": [w, v]}, per
-    /// axis in the order of the URDF; one line {"acceleration": [..], "base_acceleration": [..]} out for each.
+    /// `{"position": [..], "velocity": [..], "effort": [..], "base_pose": [x,y,z,qx,qy,qz,qw], "base_twist": [w, v]}`,
+    /// per axis in the order of the URDF; one line `{"acceleration": [..], "base_acceleration": [..]}` out for each.
     Evaluate(EvaluateArgs),
 }
 

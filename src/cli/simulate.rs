@@ -10,11 +10,12 @@ use crate::model::{Base, EFFECT_NAMES, Model};
 use crate::record::{Format, Recorder, Sample};
 use crate::world::{AxisCommand, Settings, World};
 use serde_json::json;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// Set by SIGINT and SIGTERM: the run ends early, its file is completed.
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -56,6 +57,34 @@ struct Outcome {
     files: Vec<PathBuf>,
 }
 
+/// A line on standard error that tells how far a long run is, if people see it.
+struct Progress {
+    /// When it is written next; never if nobody sees it.
+    next: Option<Instant>,
+    shown: bool,
+}
+
+impl Progress {
+    const PAUSE: Duration = Duration::from_millis(500);
+
+    fn new() -> Self {
+        Self { next: std::io::stderr().is_terminal().then(|| Instant::now() + Self::PAUSE), shown: false }
+    }
+
+    fn show(&mut self, done: u64, all: u64) {
+        if self.next.is_some_and(|next| Instant::now() >= next) {
+            let _ = write!(std::io::stderr(), "\r{:3.0} % of the duration", 100.0 * done as f64 / all as f64);
+            (self.next, self.shown) = (Some(Instant::now() + Self::PAUSE), true);
+        }
+    }
+
+    fn clear(&self) {
+        if self.shown {
+            let _ = write!(std::io::stderr(), "\r{:30}\r", "");
+        }
+    }
+}
+
 /// Checked arguments.
 struct Plan<'a> {
     args: &'a SimulateArgs,
@@ -94,6 +123,7 @@ impl<'a> Plan<'a> {
         let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
         let mut outcome = Outcome { finite: true, ..Outcome::default() };
         let mut sample = Sample::new(&self.world);
+        let mut progress = Progress::new();
         for interval in 0..=self.intervals {
             outcome.stopped = STOP.load(Ordering::Relaxed);
             if interval % self.every == 0 || interval == self.intervals {
@@ -107,10 +137,12 @@ impl<'a> Plan<'a> {
             if outcome.stopped || interval == self.intervals {
                 break;
             }
+            progress.show(interval, self.intervals);
             let start = super::bench::cpu_seconds();
             self.world.advance();
             outcome.cpu += super::bench::cpu_seconds() - start;
         }
+        progress.clear();
         outcome.files = recorder.map_or_else(|| Ok(Vec::new()), Recorder::finish).map_err(|e| e.to_string())?;
         Ok(self.summary(&outcome))
     }

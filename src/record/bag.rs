@@ -48,7 +48,7 @@ impl<W: Write + Seek> BagWriter<W> {
         let mut contents = Contents::default();
         let mut add = |topic: &'static str, kind: MessageType| {
             contents.topics.push(Topic { name: topic, kind });
-            add_channel(&mut mcap, topic, kind).map_err(io_error)
+            add_channel(&mut mcap, topic, kind)
         };
         let clock = add("/clock", CLOCK)?;
         let joint_states = add("/joint_states", JOINT_STATE)?;
@@ -112,13 +112,14 @@ impl<W: Write + Seek> Messages<'_, W> {
     }
 }
 
-fn add_channel<W: Write + Seek>(mcap: &mut Writer<W>, topic: &str, kind: MessageType) -> Result<u16, McapError> {
-    let schema = mcap.add_schema(&kind.full_name(), "ros2msg", kind.definition().as_bytes())?;
+fn add_channel<W: Write + Seek>(mcap: &mut Writer<W>, topic: &str, kind: MessageType) -> io::Result<u16> {
+    let definition = kind.definition();
+    let schema = mcap.add_schema(&kind.full_name(), "ros2msg", definition.as_bytes()).map_err(io_error)?;
     let about = BTreeMap::from([
-        ("offered_qos_profiles".to_owned(), offered_qos()),
+        ("offered_qos_profiles".to_owned(), offered_qos()?),
         ("topic_type_hash".to_owned(), kind.hash.to_owned()),
     ]);
-    mcap.add_channel(schema, topic, "cdr", &about)
+    mcap.add_channel(schema, topic, "cdr", &about).map_err(io_error)
 }
 
 fn joint_state<'a>(stamp: Time, name: &'a [String], s: &'a Snapshot) -> JointState<'a> {

@@ -152,8 +152,11 @@ fn topic_count(topic: &Topic, message_count: u64) -> TopicCount {
 }
 
 /// The profile under which the messages are to be played, as YAML: a list of one.
-pub fn offered_qos() -> String {
-    serde_saphyr::to_string(&[reliable()]).unwrap_or_default()
+///
+/// # Errors
+/// None that is known: the profile is a constant.
+pub fn offered_qos() -> io::Result<String> {
+    serde_saphyr::to_string(&[reliable()]).map_err(io::Error::other)
 }
 
 fn reliable() -> Qos {
