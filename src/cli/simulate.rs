@@ -7,7 +7,7 @@ use crate::description::Severity;
 use crate::engine::{ENGINE_NAMES, State};
 use crate::math::{Pose, Vec3};
 use crate::model::{Base, EFFECT_NAMES, Model};
-use crate::record::{Format, Recorder, Sample};
+use crate::record::{Format, RecordError, Recorder, Sample};
 use crate::world::{AxisCommand, Settings, World};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
@@ -117,24 +117,40 @@ impl<'a> Plan<'a> {
     }
 
     fn run(&mut self) -> Result<serde_json::Value, String> {
-        let open = |path: &PathBuf| Recorder::create(path, self.world.model()).map_err(|e| e.to_string());
-        let mut recorder = self.args.out.as_ref().map(open).transpose()?;
+        let open = |path: &PathBuf| Recorder::create(path, self.world.model());
+        let mut recorder = self.args.out.as_ref().map(open).transpose().map_err(|e| e.to_string())?;
         // Without the handler the run only loses its neat end.
         let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+        let mut progress = Progress::new();
+        let outcome = self.simulate(recorder.as_mut(), &mut progress);
+        progress.clear();
+        let mut outcome = outcome.map_err(|e| e.to_string())?;
+        if let Some(recorder) = recorder {
+            outcome.files = recorder.finish().map_err(|e| e.to_string())?;
+        }
+        Ok(self.summary(&outcome))
+    }
+
+    fn simulate(
+        &mut self,
+        mut recorder: Option<&mut Recorder>,
+        progress: &mut Progress,
+    ) -> Result<Outcome, RecordError> {
         let mut outcome = Outcome { finite: true, ..Outcome::default() };
         let mut sample = Sample::new(&self.world);
-        let mut progress = Progress::new();
         for interval in 0..=self.intervals {
-            outcome.stopped = STOP.load(Ordering::Relaxed);
-            if interval % self.every == 0 || interval == self.intervals {
+            let complete = interval == self.intervals;
+            outcome.stopped = !complete && STOP.load(Ordering::Relaxed);
+            let (last, row) = (complete || outcome.stopped, interval % self.every == 0);
+            if row || last {
                 sample.take(&self.world);
                 outcome.finite &= sample.is_finite();
             }
-            if let Some(r) = recorder.as_mut().filter(|_| interval % self.every == 0) {
-                r.write(&sample).map_err(|e| e.to_string())?;
+            if let Some(recorder) = recorder.as_mut().filter(|_| row) {
+                recorder.write(&sample)?;
                 outcome.rows += 1;
             }
-            if outcome.stopped || interval == self.intervals {
+            if last {
                 break;
             }
             progress.show(interval, self.intervals);
@@ -142,9 +158,7 @@ impl<'a> Plan<'a> {
             self.world.advance();
             outcome.cpu += super::bench::cpu_seconds() - start;
         }
-        progress.clear();
-        outcome.files = recorder.map_or_else(|| Ok(Vec::new()), Recorder::finish).map_err(|e| e.to_string())?;
-        Ok(self.summary(&outcome))
+        Ok(outcome)
     }
 
     fn summary(&self, outcome: &Outcome) -> serde_json::Value {
