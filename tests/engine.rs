@@ -251,6 +251,29 @@ fn servos_hold_and_saturate() {
     }
 }
 
+/// A servo that nothing bounds (a URDF without effort) holds from any state, and a stop still stops it.
+#[test]
+fn an_unbounded_servo() {
+    let mut m = pendulum();
+    (m.axes[0].lower, m.axes[0].upper, m.axes[0].friction) = (-0.5, 1.2, 0.5);
+    (m.effects.limits, m.effects.friction) = (true, true);
+    for (start, speed, target, end) in
+        [(1.0, 30.0, 0.3, 0.3), (0.0, -30.0, 0.3, 0.3), (0.5, 5.0, 2.0, 1.2), (0.0, 0.0, -3.0, -0.5)]
+    {
+        let mut w = world(&m, settings(Integrator::SemiImplicitEuler, 0.001, 1));
+        let mut s = State::initial(&m);
+        s.set_axis(&m, 0, start, speed);
+        w.set_initial_state(s);
+        w.set_commands(&[AxisCommand::servo(target)]).unwrap();
+        run(&mut w, 2.0);
+        let (q, v) = w.state().axis(&m, 0);
+        assert!((q - end).abs() <= 1e-9 && v.abs() <= 1e-9, "{start} {speed} {target}: {q} {v}");
+        let mut shot = w.new_snapshot();
+        w.write_snapshot(&mut shot);
+        assert!(shot.effort[0].is_finite());
+    }
+}
+
 /// Spin-up along the torque–speed line: ω = ω0 (1 − exp(−t/τ)), with τ = I ω0 / T.
 #[test]
 fn torque_speed_line() {
@@ -298,6 +321,50 @@ fn stiff_and_extreme_stays_finite() {
     run(&mut w, 5.0);
     assert_eq!(w.stats().diverged_steps, 0);
     assert!(w.state().q.iter().chain(&w.state().v).all(|x| x.abs() < 1e6));
+}
+
+/// Random trees with every law at work and commands that change all the time, at a large step: finite, and the axis set
+/// settles within the default iterations in all but one step of a hundred, and in all with 200 iterations.
+#[test]
+fn random_trees_under_random_commands() {
+    for (iterations, allowed) in [(10, 0.01), (200, 0.0)] {
+        let (unsettled, steps) = shake_random_trees(iterations);
+        println!("{iterations} iterations: {unsettled} of {steps} steps unsettled");
+        assert!(unsettled as f64 <= allowed * steps as f64);
+    }
+}
+
+fn shake_random_trees(iterations: u32) -> (u64, u64) {
+    let (mut unsettled, mut steps) = (0, 0);
+    for seed in 0..40 {
+        let mut rng = Random(seed);
+        let joints: Vec<JointType> = (0..14).map(|i| ALL[(i * 2 + seed as usize) % 3]).collect();
+        let mut m = tree(&joints, seed % 2 == 0, seed);
+        for a in &mut m.axes {
+            (a.friction, a.damping) = (rng.unit().abs() * 3.0, rng.unit().abs());
+            (a.lower, a.upper) = (-0.2 - rng.unit().abs(), 0.2 + rng.unit().abs());
+            (a.max_torque, a.max_speed) = (rng.unit().abs() * 100.0, 5.0);
+        }
+        m.effects = realnoid::model::Effects::called_for(&m.axes, &m.bodies);
+        let s = Settings { solver_iterations: iterations, ..settings(Integrator::SemiImplicitEuler, 0.005, 1) };
+        let mut w = world(&m, s);
+        let mut commands = w.commands().to_vec();
+        for step in 0..1000 {
+            let axis = step % commands.len();
+            commands[axis] = match rng.next() % 3 {
+                0 => AxisCommand::IDLE,
+                1 => AxisCommand::torque(rng.unit() * 30.0),
+                _ => AxisCommand::servo(rng.unit()),
+            };
+            w.set_commands(&commands).unwrap();
+            w.advance();
+        }
+        assert_eq!(w.stats().diverged_steps, 0, "seed {seed}");
+        assert!(w.state().q.iter().chain(&w.state().v).all(|x| x.abs() < 1e6), "seed {seed}");
+        unsettled += w.stats().unsettled_steps;
+        steps += w.stats().steps;
+    }
+    (unsettled, steps)
 }
 
 /// What is not a number never reaches the state.

@@ -30,24 +30,25 @@ struct Output {
     base_acceleration: Vec<f64>,
 }
 
-/// Reads states until the input ends. Exit code 2 for wrong arguments or a line that makes no sense.
+/// Reads states until the input ends. Exit code 1 if the URDF cannot be loaded, 2 for wrong arguments or a line that makes
+/// no sense.
 pub fn run(args: &EvaluateArgs) -> ExitCode {
     match evaluate(args) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(reason) => {
+        Err((code, reason)) => {
             eprintln!("error: {}", reason.trim_end());
-            ExitCode::from(2)
+            ExitCode::from(code)
         }
     }
 }
 
-fn evaluate(args: &EvaluateArgs) -> Result<(), String> {
-    let gravity = numbers("--gravity", "X,Y,Z in m/s²", &args.gravity)?;
-    let model = load(Some(&args.urdf), base_by_name(&args.base))?.model;
+fn evaluate(args: &EvaluateArgs) -> Result<(), (u8, String)> {
+    let gravity = numbers("--gravity", "X,Y,Z in m/s²", &args.gravity).map_err(|e| (2, e))?;
+    let model = load(Some(&args.urdf), base_by_name(&args.base)).map_err(|e| (1, e))?.model;
     let mut ws = Workspace::new(&model);
     let mut out = std::io::stdout().lock();
     for (n, line) in std::io::stdin().lock().lines().enumerate() {
-        let wrong = |e: &dyn std::fmt::Display| format!("standard input, line {}: {e}", n + 1);
+        let wrong = |e: &dyn std::fmt::Display| (2, format!("standard input, line {}: {e}", n + 1));
         let line = line.map_err(|e| wrong(&e))?;
         let input: Input = serde_json::from_str(&line).map_err(|e| wrong(&e))?;
         let output = one(&model, &mut ws, &input, gravity).map_err(|e| wrong(&e))?;

@@ -26,3 +26,14 @@ pub struct Twist {
     /// m/s.
     pub linear: Vec3,
 }
+
+/// Rotation of fixed-axis roll, pitch, yaw (URDF: R = Rz(yaw) Ry(pitch) Rx(roll)), with the same bits on every machine.
+pub fn from_roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> Quat {
+    let ((sr, cr), (sp, cp), (sy, cy)) = (sin_cos(0.5 * roll), sin_cos(0.5 * pitch), sin_cos(0.5 * yaw));
+    Quat::new_unchecked(nalgebra::Quaternion::new(
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    ))
+}

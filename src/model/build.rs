@@ -3,7 +3,8 @@
 use super::{Axis, AxisKind, AxisSlot, Body, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model};
 use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind, Origin};
 use crate::mass::MassProperties;
-use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3};
+use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3, from_roll_pitch_yaw};
+use crate::shape::pose;
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
 use std::collections::HashMap;
 
@@ -291,11 +292,7 @@ fn world() -> Body {
 }
 
 fn rotation(o: &Origin) -> Quat {
-    UnitQuaternion::from_euler_angles(o.rpy[0], o.rpy[1], o.rpy[2])
-}
-
-fn pose(o: &Origin) -> Pose {
-    Pose::from_parts(Translation3::new(o.xyz[0], o.xyz[1], o.xyz[2]), rotation(o))
+    from_roll_pitch_yaw(o.rpy)
 }
 
 fn quat(m: &Mat3) -> Quat {

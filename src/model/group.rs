@@ -45,12 +45,12 @@ impl EulerFrame {
 
     /// The angles of a rotation, on the branch next to `before`, so that they stay continuous through the pole.
     pub fn angles(&self, r: &M3<f64>, before: [f64; 3]) -> [f64; 3] {
-        let cos_p = r.r[0].x.hypot(r.r[1].x);
+        let cos_p = libm::hypot(r.r[0].x, r.r[1].x);
         if cos_p < 1e-9 {
             return self.angles_at_pole(r, before);
         }
-        let p = (-r.r[2].x).atan2(cos_p);
-        let near = [r.r[1].x.atan2(r.r[0].x), p, self.sense * r.r[2].y.atan2(r.r[2].z)];
+        let p = libm::atan2(-r.r[2].x, cos_p);
+        let near = [libm::atan2(r.r[1].x, r.r[0].x), p, self.sense * libm::atan2(r.r[2].y, r.r[2].z)];
         let far = [near[0] + PI, PI - p, near[2] + PI];
         let (near, far) = (unwrap(near, before), unwrap(far, before));
         if distance(near, before) <= distance(far, before) { near } else { far }
@@ -62,7 +62,7 @@ impl EulerFrame {
         let (s, c) = sin_cos(before[0]);
         // Rz(−h) R = Ry(±π/2) Rx(φ): its second row is (0, cos φ, −sin φ).
         let row1 = r.r[0] * (-s) + r.r[1] * c;
-        let phi = (-row1.z).atan2(row1.y);
+        let phi = libm::atan2(-row1.z, row1.y);
         unwrap([before[0], if up { 0.5 * PI } else { -0.5 * PI }, self.sense * phi], before)
     }
 

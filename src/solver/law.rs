@@ -103,7 +103,7 @@ impl Law {
             Mode::Idle => {}
             Mode::Torque => {
                 let torque = if c.torque.is_nan() { 0.0 } else { c.torque };
-                self.constant = torque.clamp(-axis.max_torque, axis.max_torque);
+                self.constant = bounded(torque, axis.max_torque);
                 let speed = given(c.speed, axis.no_load_speed).min(axis.no_load_speed);
                 if speed.is_finite() && self.constant * input.v > 0.0 {
                     self.drive_slope = self.constant.abs() / speed;
@@ -113,7 +113,7 @@ impl Law {
             Mode::Servo => {
                 let error = c.target - input.q;
                 let bound = given(c.speed, axis.max_speed).min(axis.max_speed);
-                self.servo_speed = (error / SERVO_TIME.max(h)).clamp(-bound, bound);
+                self.servo_speed = bounded(error / SERVO_TIME.max(h), bound);
                 self.servo = given(c.torque, axis.max_torque).min(axis.max_torque);
                 self.insert(self.servo_speed, self.servo, SERVO);
             }
@@ -152,6 +152,9 @@ impl Law {
 
     /// Drops what lies beyond a stop and turns heights into torques.
     fn finish(&mut self) {
+        if self.servo == f64::INFINITY {
+            return self.finish_unbounded();
+        }
         let risers = &mut self.risers;
         let start = risers[..self.count].iter().position(|r| r.kinds & LOWER != 0).unwrap_or(0);
         let beyond: f64 = risers[..start].iter().map(|r| r.right).sum();
@@ -169,6 +172,15 @@ impl Law {
             torque -= 2.0 * half;
             r.right = if r.kinds & UPPER != 0 { f64::NEG_INFINITY } else { torque };
         }
+    }
+
+    /// A servo that nothing bounds is one riser from +∞ to −∞; only a stop moves it.
+    fn finish_unbounded(&mut self) {
+        let stop = |kind| self.risers[..self.count].iter().find(|r| r.kinds & kind != 0).map(|r| r.speed);
+        let speed =
+            self.servo_speed.max(stop(LOWER).unwrap_or(f64::NEG_INFINITY)).min(stop(UPPER).unwrap_or(f64::INFINITY));
+        self.risers[0] = Riser { speed, left: f64::INFINITY, right: f64::NEG_INFINITY, kinds: SERVO | FRICTION };
+        self.count = 1;
     }
 
     /// Torque of flat `j`, without the slope.
@@ -200,17 +212,18 @@ impl Law {
             return steady + beside(self.servo_speed, self.servo);
         }
         if self.friction > 0.0 {
-            rest -= if kinds & FRICTION != 0 {
-                rest.clamp(-self.friction, self.friction)
-            } else {
-                beside(0.0, self.friction)
-            };
+            rest -= if kinds & FRICTION != 0 { bounded(rest, self.friction) } else { beside(0.0, self.friction) };
         }
-        steady + if kinds & SERVO != 0 { rest.clamp(-self.servo, self.servo) } else { 0.0 }
+        steady + if kinds & SERVO != 0 { bounded(rest, self.servo) } else { 0.0 }
     }
 }
 
 /// A magnitude from a command, or the axis' own where it is not given.
 fn given(command: f64, own: f64) -> f64 {
     if command.is_nan() { own } else { command.abs() }
+}
+
+/// `x` within ±`bound`; unlike `clamp` it cannot panic.
+fn bounded(x: f64, bound: f64) -> f64 {
+    x.min(bound).max(-bound)
 }

@@ -19,6 +19,9 @@ pub struct Settings {
     pub integrator: Integrator,
 }
 
+/// Shorter steps drown in rounding, s.
+const SHORTEST_STEP: f64 = 1e-12;
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -47,6 +50,13 @@ impl Settings {
         ranged("steps_per_interval", f64::from(self.steps_per_interval), 1.0, 1000.0, "")?;
         ranged("solver_iterations", f64::from(self.solver_iterations), 1.0, 10_000.0, "")?;
         ranged("time_scale", self.time_scale, 0.0, 100.0, "")?;
+        let step = self.control_interval_ns as f64 * 1e-9 * self.time_scale / f64::from(self.steps_per_interval);
+        if step > 0.0 && step < SHORTEST_STEP {
+            return Err(format!(
+                "time_scale {} makes a step of {step} s; it must be 0 or give at least {SHORTEST_STEP} s",
+                self.time_scale
+            ));
+        }
         for (axis, g) in ["x", "y", "z"].iter().zip(self.gravity) {
             ranged(&format!("gravity {axis}"), g, -1000.0, 1000.0, " m/s²")?;
         }
