@@ -33,8 +33,8 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Simulates without ROS, as fast as it goes; a JSON summary to standard output.
     ///
-    /// Exit code 0: every value is finite. 1: one is not, the run was stopped by a signal, or a file cannot be read or
-    /// written. 2: an argument is wrong. Whatever ends a run but a full disk, the file is complete.
+    /// Exit code 0: every value is finite. 1: one is not, the run was stopped by a signal, the robot cannot be loaded or
+    /// the output not be written. 2: an argument or the scene is wrong. Whatever ends a run but a full disk, the file is complete.
     Simulate(Box<SimulateArgs>),
     /// Time per call of kinematics, rnea, crba, aba and step: medians, thread CPU time.
     Bench(BenchArgs),

@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 /// Set by SIGINT and SIGTERM: the run ends early, its file is completed.
 static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Runs; prints the summary to standard output. Exit codes: 0 all finite; 1 not finite, stopped by a signal, a file that
-/// cannot be read or written; 2 wrong arguments.
+/// Runs; prints the summary to standard output. Exit codes: 0 all finite; 1 not finite, stopped by a signal, robot not
+/// loaded, output not written; 2 wrong arguments or scene.
 pub fn run(args: &SimulateArgs) -> ExitCode {
     let mut plan = match Plan::new(args) {
         Ok(plan) => plan,
@@ -97,13 +97,13 @@ struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// `Err`: exit code (1 not loaded, 2 wrong arguments) and reason.
     fn new(args: &'a SimulateArgs) -> Result<Self, (u8, String)> {
-        let (usage, unloadable) = (|reason| (2, reason), |reason| (1, reason));
+        let usage = |reason| (2, reason);
         args.out.as_deref().map(Format::of).transpose().map_err(|e| usage(format!("--out {e}")))?;
-        let scene = Scene::read(args.scene.as_deref()).map_err(unloadable)?;
+        let scene = Scene::read(args.scene.as_deref()).map_err(usage)?;
         let settings = settings(args, &scene).map_err(usage)?;
         let base = base(args, &scene);
         let pose = base_pose(args, &scene).map_err(usage)?;
-        let loaded = load_at(Some(&args.urdf), base, pose).map_err(unloadable)?;
+        let loaded = load_at(Some(&args.urdf), base, pose).map_err(|reason| (1, reason))?;
         let mut model = Model::clone(&loaded.model);
         switch_effects(args, &scene, &mut model).map_err(usage)?;
         let initial = initial_state(args, &model, pose).map_err(usage)?;
@@ -184,7 +184,7 @@ impl<'a> Plan<'a> {
         json!({
             "steps": s.steps,
             "rows": outcome.rows,
-            "files": outcome.files,
+            "output": outcome.files,
             "simulated_seconds": self.world.time(),
             "cpu_seconds": cpu,
             "us_per_step": if s.steps > 0 { cpu * 1e6 / s.steps as f64 } else { 0.0 },

@@ -194,7 +194,7 @@ def test_the_folder_is_a_rosbag2_bag(free):
         assert (reader.message_count, reader.start_time) == (3 * ROWS, 0)
         for connection in reader.connections:
             assert connection.ext.offered_qos_profiles[0].reliability.name == "RELIABLE"
-    assert free.summary["files"] == [str(free.bag), str(free.bag.parent / "metadata.yaml")]
+    assert free.summary["output"] == [str(free.bag), str(free.bag.parent / "metadata.yaml")]
 
 
 def test_rosbags_converts_it_to_sqlite3(free, tmp_path):
@@ -215,7 +215,7 @@ def test_metadata_goes_only_into_a_folder_of_the_bags_own(tmp_path):
     with AnyReader([tmp_path]) as reader:
         assert reader.message_count == 2 * 21, "the same bag once more: its metadata is renewed"
     before = metadata.read_text()
-    files = simulate(*short, "--out", tmp_path / "b.mcap")["files"]
+    files = simulate(*short, "--out", tmp_path / "b.mcap")["output"]
     assert (files, metadata.read_text()) == ([str(tmp_path / "b.mcap")], before), "a second file stands for itself"
     metadata.write_text("rosbag2_bagfile_information:\n  relative_file_paths: [a.mcap, a_1.mcap]\n")
     bag = (tmp_path / "a.mcap").read_bytes()

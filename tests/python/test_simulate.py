@@ -104,12 +104,12 @@ def test_the_summary_has_what_the_contract_names(pendulum, tmp_path):
     assert (s["steps"], s["rows"], s["simulated_seconds"]) == (2000, 51, 0.5)
     assert s["cpu_seconds"] > 0 and s["us_per_step"] == pytest.approx(s["cpu_seconds"] * 1e6 / s["steps"])
     assert (s["worst_penetration"], s["finite"], s["stopped"], s["warnings"]) == (0, True, False, [])
-    assert s["files"] == [str(path)]
+    assert s["output"] == [str(path)]
 
 
 def test_without_out_nothing_is_written(pendulum, tmp_path):
     s = simulate(pendulum, "--duration", 0.01)
-    assert (s["rows"], s["files"]) == (0, [])
+    assert (s["rows"], s["output"]) == (0, [])
     assert [p.name for p in tmp_path.iterdir()] == ["pendulum.urdf"]
 
 
@@ -469,15 +469,15 @@ def test_a_scene_can_free_the_base(brick, tmp_path):
         ("version: [\n", []),
     ],
 )
-def test_a_wrong_scene_gives_code_1_and_names_file_and_line(pendulum, tmp_path, text, said):
+def test_a_wrong_scene_gives_code_2_and_names_file_and_line(pendulum, tmp_path, text, said):
     path = scene(tmp_path, text)
-    message = refused(pendulum, "--duration", 1, "--scene", path, code=1)
+    message = refused(pendulum, "--duration", 1, "--scene", path)
     for part in [str(path), *said]:
         assert part in message
 
 
-def test_a_missing_scene_gives_code_1(pendulum, tmp_path):
-    assert "nowhere.yaml" in refused(pendulum, "--duration", 1, "--scene", tmp_path / "nowhere.yaml", code=1)
+def test_a_missing_scene_gives_code_2(pendulum, tmp_path):
+    assert "nowhere.yaml" in refused(pendulum, "--duration", 1, "--scene", tmp_path / "nowhere.yaml")
 
 
 def test_what_a_scene_has_that_is_not_simulated_is_said(pendulum, tmp_path):
