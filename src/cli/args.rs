@@ -34,7 +34,8 @@ pub enum Command {
     /// Simulates without ROS, as fast as it goes; a JSON summary to standard output.
     ///
     /// Exit code 0: every value is finite. 1: one is not, the run was stopped by a signal, the robot cannot be loaded or
-    /// the output not be written. 2: an argument or the scene is wrong. Whatever ends a run but a full disk, the file is complete.
+    /// the output not be written. 2: an argument or the scene is wrong. A run that diverges or is stopped leaves a
+    /// complete file.
     Simulate(Box<SimulateArgs>),
     /// Time per call of kinematics, rnea, crba, aba and step: medians, thread CPU time.
     Bench(BenchArgs),
