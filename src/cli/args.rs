@@ -32,12 +32,16 @@ pub enum Command {
     /// Links, masses, inertias, axes, and the effects that the scene calls for.
     Inspect(InspectArgs),
     /// Simulates without ROS, as fast as it goes; a JSON summary to standard output.
+    ///
+    /// Exit code 0: every value is finite. 1: one is not, the run was stopped by a signal, the robot cannot be loaded or
+    /// the output not be written. 2: an argument or the scene is wrong. A run that diverges or is stopped leaves a
+    /// complete file.
     Simulate(Box<SimulateArgs>),
     /// Time per call of kinematics, rnea, crba, aba and step: medians, thread CPU time.
     Bench(BenchArgs),
     /// Forward dynamics of single states, to compare with other programs: one JSON object per line on standard input
-    /// {"position": [..], "velocity": [..], "effort": [..], "base_pose": [x,y,z,qx,qy,qz,qw], "base_twist": [w, v]}, per
-    /// axis in the order of the URDF; one line {"acceleration": [..], "base_acceleration": [..]} out for each.
+    /// `{"position": [..], "velocity": [..], "effort": [..], "base_pose": [x,y,z,qx,qy,qz,qw], "base_twist": [w, v]}`,
+    /// per axis in the order of the URDF; one line `{"acceleration": [..], "base_acceleration": [..]}` out for each.
     Evaluate(EvaluateArgs),
 }
 
@@ -52,7 +56,7 @@ pub struct InspectArgs {
     /// fixed (on a test stand) or free.
     #[arg(long, default_value = "fixed", value_parser = ["fixed", "free"])]
     pub base: String,
-    /// The URDF with an exact <inertial> in every link whose mass comes from our tag, for tools that do not read it.
+    /// The URDF with an exact `<inertial>` in every link whose mass comes from our tag, for tools that do not read it.
     #[arg(long, conflicts_with = "json")]
     pub urdf_with_inertials: bool,
 }
@@ -94,11 +98,11 @@ pub struct SimulateArgs {
     /// World settings (YAML); flags win over it.
     #[arg(long)]
     pub scene: Option<PathBuf>,
-    /// Simulated time, s.
-    #[arg(long)]
+    /// Simulated time, s; rounded to whole control intervals.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub duration: f64,
     /// s; 0.001 unless the scene says otherwise.
-    #[arg(long)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub control_interval: Option<f64>,
     /// Steps per control interval, 1 to 1000; 5 unless the scene says otherwise.
     #[arg(long)]
@@ -116,7 +120,7 @@ pub struct SimulateArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
     /// Simulated time per control interval against the interval, 0 to 100.
-    #[arg(long)]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub time_scale: Option<f64>,
     /// fixed (on a test stand) or free.
     #[arg(long, value_parser = ["fixed", "free"])]
@@ -136,8 +140,8 @@ pub struct SimulateArgs {
     /// Servo target (rad; m for a linear axis) during the whole run.
     #[arg(long, value_name = "AXIS=POSITION")]
     pub servo: Vec<String>,
-    /// Time between two rows, s; the control interval if not given.
-    #[arg(long)]
+    /// Time between two rows, s: a whole multiple of the control interval, which it is if not given.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub every: Option<f64>,
     /// Switch an effect off: gravity, damping, friction, limits, drives.
     #[arg(long, value_name = "EFFECT")]
@@ -145,8 +149,12 @@ pub struct SimulateArgs {
     /// Switch an effect on.
     #[arg(long, value_name = "EFFECT")]
     pub on: Vec<String>,
-    /// Where the rows go: FILE.csv or FILE.mcap.
-    #[arg(long)]
+    /// Where the rows go: FILE.csv or FILE.mcap; its folder is made if it does not exist.
+    ///
+    /// FILE.mcap is a bag of ROS 2 messages: /clock, /joint_states and, for a free base, /odom. In a new or empty folder
+    /// a metadata.yaml is written beside it, which makes the folder a bag for `ros2 bag play FOLDER` and rosbags. In a
+    /// folder with other things FILE.mcap stands for itself. An earlier run of the same name is replaced.
+    #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }
 

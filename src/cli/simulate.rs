@@ -2,21 +2,26 @@
 
 use super::args::{SimulateArgs, assignment, numbers};
 use super::load::{Loaded, load_at};
-use super::scene::{Scene, integrator, interval_ns};
+use super::scene::{Scene, integrator, interval_ns, pose};
 use crate::description::Severity;
 use crate::engine::{ENGINE_NAMES, State};
-use crate::math::{Pose, Quat, Vec3};
+use crate::math::{Pose, Vec3};
 use crate::model::{Base, EFFECT_NAMES, Model};
-use crate::record::CsvWriter;
+use crate::record::{Format, RecordError, Recorder, Sample};
 use crate::world::{AxisCommand, Settings, World};
-use nalgebra::{Quaternion, Translation3};
 use serde_json::json;
-use std::fs::File;
-use std::path::Path;
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
-/// Runs; prints the summary to standard output. Exit codes: 0 all finite, 1 not finite or not loaded, 2 wrong arguments.
+/// Set by SIGINT and SIGTERM: the run ends early, its file is completed.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Runs; prints the summary to standard output. Exit codes: 0 all finite; 1 not finite, stopped by a signal, robot not
+/// loaded, output not written; 2 wrong arguments or scene.
 pub fn run(args: &SimulateArgs) -> ExitCode {
     let mut plan = match Plan::new(args) {
         Ok(plan) => plan,
@@ -27,12 +32,55 @@ pub fn run(args: &SimulateArgs) -> ExitCode {
     };
     match plan.run() {
         Ok(summary) => {
-            println!("{summary:#}");
-            if summary["finite"] == true { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+            // A reader that has gone away (`| head`) is no failure of the run.
+            let _ = writeln!(std::io::stdout(), "{summary:#}");
+            let complete = summary["finite"] == true && summary["stopped"] == false;
+            if complete { ExitCode::SUCCESS } else { ExitCode::FAILURE }
         }
         Err(reason) => {
             eprintln!("error: {reason}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+/// What became of a run.
+#[derive(Default)]
+struct Outcome {
+    /// CPU time of the steps, s.
+    cpu: f64,
+    rows: u64,
+    /// Every value looked at was finite.
+    finite: bool,
+    /// By a signal.
+    stopped: bool,
+    files: Vec<PathBuf>,
+}
+
+/// A line on standard error that tells how far a long run is, if people see it.
+struct Progress {
+    /// When it is written next; never if nobody sees it.
+    next: Option<Instant>,
+    shown: bool,
+}
+
+impl Progress {
+    const PAUSE: Duration = Duration::from_millis(500);
+
+    fn new() -> Self {
+        Self { next: std::io::stderr().is_terminal().then(|| Instant::now() + Self::PAUSE), shown: false }
+    }
+
+    fn show(&mut self, done: u64, all: u64) {
+        if self.next.is_some_and(|next| Instant::now() >= next) {
+            let _ = write!(std::io::stderr(), "\r{:3.0} % of the duration", 100.0 * done as f64 / all as f64);
+            (self.next, self.shown) = (Some(Instant::now() + Self::PAUSE), true);
+        }
+    }
+
+    fn clear(&self) {
+        if self.shown {
+            let _ = write!(std::io::stderr(), "\r{:30}\r", "");
         }
     }
 }
@@ -50,9 +98,10 @@ impl<'a> Plan<'a> {
     /// `Err`: exit code (1 not loaded, 2 wrong arguments) and reason.
     fn new(args: &'a SimulateArgs) -> Result<Self, (u8, String)> {
         let usage = |reason| (2, reason);
+        args.out.as_deref().map(Format::of).transpose().map_err(|e| usage(format!("--out {e}")))?;
         let scene = Scene::read(args.scene.as_deref()).map_err(usage)?;
         let settings = settings(args, &scene).map_err(usage)?;
-        let base = base(args, &scene).map_err(usage)?;
+        let base = base(args, &scene);
         let pose = base_pose(args, &scene).map_err(usage)?;
         let loaded = load_at(Some(&args.urdf), base, pose).map_err(|reason| (1, reason))?;
         let mut model = Model::clone(&loaded.model);
@@ -63,41 +112,57 @@ impl<'a> Plan<'a> {
         set_commands(args, &mut world).map_err(usage)?;
         let (intervals, every) = schedule(args, &settings).map_err(usage)?;
         let mut warnings = warnings(&loaded);
-        warnings.extend(scene.pending());
+        warnings.extend(scene.pending);
         Ok(Self { args, world, intervals, every, warnings })
     }
 
     fn run(&mut self) -> Result<serde_json::Value, String> {
-        let mut writer = match &self.args.out {
-            Some(path) => Some(open(path, &self.world)?),
-            None => None,
-        };
-        let mut cpu = 0.0;
-        let mut rows = 0;
+        let open = |path: &PathBuf| Recorder::create(path, self.world.model());
+        let mut recorder = self.args.out.as_ref().map(open).transpose().map_err(|e| e.to_string())?;
+        // Without the handler the run only loses its neat end.
+        let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+        let mut progress = Progress::new();
+        let outcome = self.simulate(recorder.as_mut(), &mut progress);
+        progress.clear();
+        let mut outcome = outcome.map_err(|e| e.to_string())?;
+        if let Some(recorder) = recorder {
+            outcome.files = recorder.finish().map_err(|e| e.to_string())?;
+        }
+        Ok(self.summary(&outcome))
+    }
+
+    fn simulate(
+        &mut self,
+        mut recorder: Option<&mut Recorder>,
+        progress: &mut Progress,
+    ) -> Result<Outcome, RecordError> {
+        let mut outcome = Outcome { finite: true, ..Outcome::default() };
+        let mut sample = Sample::new(&self.world);
         for interval in 0..=self.intervals {
-            if let Some(w) = writer.as_mut().filter(|_| interval % self.every == 0) {
-                w.row(&self.world).map_err(|e| self.cannot_write(&e))?;
-                rows += 1;
+            let complete = interval == self.intervals;
+            outcome.stopped = !complete && STOP.load(Ordering::Relaxed);
+            let (last, row) = (complete || outcome.stopped, interval % self.every == 0);
+            if row || last {
+                sample.take(&self.world);
+                outcome.finite &= sample.is_finite();
             }
-            if interval < self.intervals {
-                let start = super::bench::cpu_seconds();
-                self.world.advance();
-                cpu += super::bench::cpu_seconds() - start;
+            if let Some(recorder) = recorder.as_mut().filter(|_| row) {
+                recorder.write(&sample)?;
+                outcome.rows += 1;
             }
+            if last {
+                break;
+            }
+            progress.show(interval, self.intervals);
+            let start = super::bench::cpu_seconds();
+            self.world.advance();
+            outcome.cpu += super::bench::cpu_seconds() - start;
         }
-        if let Some(w) = writer {
-            w.finish().map_err(|e| self.cannot_write(&e))?;
-        }
-        Ok(self.summary(cpu, rows))
+        Ok(outcome)
     }
 
-    fn cannot_write(&self, error: &std::io::Error) -> String {
-        let path = self.args.out.as_deref().unwrap_or(Path::new(""));
-        format!("cannot write '{}': {error}", path.display())
-    }
-
-    fn summary(&self, cpu: f64, rows: u64) -> serde_json::Value {
-        let s = self.world.stats();
+    fn summary(&self, outcome: &Outcome) -> serde_json::Value {
+        let (s, cpu) = (self.world.stats(), outcome.cpu);
         let mut warnings = self.warnings.clone();
         let counted = [
             (
@@ -109,15 +174,23 @@ impl<'a> Plan<'a> {
             (s.pole_steps, "steps had a 3dof group at its pole: torques about its angles were bounded there"),
             (s.diverged_steps, "step would have given values that are not finite: the world stood still from there on"),
         ];
+        if outcome.stopped {
+            warnings.push("stopped by a signal before the end of the duration".into());
+        }
+        if !outcome.finite && s.diverged_steps == 0 {
+            warnings.push("a value is not finite: the state can be represented, its energy or momentum cannot".into());
+        }
         warnings.extend(counted.iter().filter(|(n, _)| *n > 0).map(|(n, text)| format!("{n} {text}")));
         json!({
             "steps": s.steps,
-            "rows": rows,
+            "rows": outcome.rows,
+            "output": outcome.files,
             "simulated_seconds": self.world.time(),
             "cpu_seconds": cpu,
             "us_per_step": if s.steps > 0 { cpu * 1e6 / s.steps as f64 } else { 0.0 },
             "worst_penetration": 0.0,
-            "finite": s.diverged_steps == 0,
+            "finite": outcome.finite,
+            "stopped": outcome.stopped,
             "fallback_steps": s.fallback_steps,
             "unsettled_steps": s.unsettled_steps,
             "pole_steps": s.pole_steps,
@@ -127,7 +200,7 @@ impl<'a> Plan<'a> {
 }
 
 fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {
-    let mut s = scene.settings()?;
+    let mut s = scene.settings;
     if let Some(t) = args.control_interval {
         s.control_interval_ns = interval_ns(t)?;
     }
@@ -147,33 +220,34 @@ fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {
     Ok(s)
 }
 
-fn base(args: &SimulateArgs, scene: &Scene) -> Result<Base, String> {
-    match args.base.as_deref().or(scene.robot.base.as_deref()) {
-        None | Some("fixed") => Ok(Base::Fixed),
-        Some("free") => Ok(Base::Free),
-        Some(other) => Err(format!("base '{other}' does not exist; choose one of: fixed, free")),
-    }
+fn base(args: &SimulateArgs, scene: &Scene) -> Base {
+    args.base.as_deref().map(super::base_by_name).or(scene.base).unwrap_or(Base::Fixed)
 }
 
 fn base_pose(args: &SimulateArgs, scene: &Scene) -> Result<Pose, String> {
-    let flag = args.base_pose.as_ref().map(|text| numbers("--base-pose", "X,Y,Z,QX,QY,QZ,QW", text)).transpose()?;
-    let Some(p) = flag.or(scene.robot.pose) else { return Ok(Pose::identity()) };
-    let q = Quaternion::new(p[6], p[3], p[4], p[5]);
-    if (q.norm() - 1.0).abs() > 1e-3 {
-        return Err(format!("base pose: the quaternion's length is {}; it must be 1", q.norm()));
-    }
-    Ok(Pose::from_parts(Translation3::new(p[0], p[1], p[2]), Quat::from_quaternion(q)))
+    let Some(text) = &args.base_pose else { return Ok(scene.pose) };
+    let form = "X,Y,Z,QX,QY,QZ,QW";
+    pose(numbers("--base-pose", form, text)?).map_err(|reason| format!("--base-pose {text}: {reason}"))
 }
 
 fn switch_effects(args: &SimulateArgs, scene: &Scene, model: &mut Model) -> Result<(), String> {
-    let from_scene = scene.world.effects.iter().map(|(name, on)| (name, *on));
-    let flags = args.off.iter().map(|n| (n, false)).chain(args.on.iter().map(|n| (n, true)));
-    for (name, on) in from_scene.chain(flags) {
-        if !model.effects.switch(name, on) {
-            return Err(format!("effect '{name}' does not exist; choose one of: {}", EFFECT_NAMES.join(", ")));
+    for (name, on) in &scene.effects {
+        switch_effect(model, name, *on)?;
+    }
+    if let Some(both) = args.off.iter().find(|name| args.on.contains(name)) {
+        return Err(format!("--off {both} and --on {both} contradict each other; leave one of them out"));
+    }
+    for (flag, names, on) in [("--off", &args.off, false), ("--on", &args.on, true)] {
+        for name in names {
+            switch_effect(model, name, on).map_err(|reason| format!("{flag} {name}: {reason}"))?;
         }
     }
     Ok(())
+}
+
+fn switch_effect(model: &mut Model, name: &str, on: bool) -> Result<(), String> {
+    let known = || format!("effect '{name}' does not exist; choose one of: {}", EFFECT_NAMES.join(", "));
+    if model.effects.switch(name, on) { Ok(()) } else { Err(known()) }
 }
 
 fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, String> {
@@ -202,15 +276,24 @@ fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, St
 
 fn set_commands(args: &SimulateArgs, world: &mut World) -> Result<(), String> {
     let model = world.model().clone();
-    let mut commands = world.commands().to_vec();
-    let torque = AxisCommand::torque as fn(f64) -> AxisCommand;
-    let given = args.effort.iter().map(|t| ("--effort", "AXIS=TORQUE", t, torque));
-    let given =
-        given.chain(args.servo.iter().map(|t| ("--servo", "AXIS=POSITION", t, AxisCommand::servo as fn(f64) -> _)));
-    for (flag, form, text, command) in given {
+    let (mut commands, mut taken) = (world.commands().to_vec(), Vec::new());
+    let (torque, servo) = (AxisCommand::torque as fn(f64) -> AxisCommand, AxisCommand::servo as fn(f64) -> AxisCommand);
+    let efforts = args.effort.iter().map(|text| ("--effort", "AXIS=TORQUE", text, torque));
+    let servos = args.servo.iter().map(|text| ("--servo", "AXIS=POSITION", text, servo));
+    for (flag, form, text, command) in efforts.chain(servos) {
         let (name, values) = assignment(flag, form, text)?;
         let [value] = values[..] else { return Err(format!("{flag} {text}: must be {form}")) };
-        commands[axis(&model, flag, name)?] = command(value);
+        let axis = axis(&model, flag, name)?;
+        let wrong = |reason: &str| Err(format!("{flag} {text}: axis '{name}' {reason}"));
+        if taken.contains(&axis) {
+            return wrong("already has a command; give it one --effort or one --servo");
+        }
+        let drive = &model.axes[axis];
+        if !drive.switchable && drive.mode != command(value).mode {
+            return wrong("has a drive that stays in its mode; its tag can allow the change with switchable=\"true\"");
+        }
+        taken.push(axis);
+        commands[axis] = command(value);
     }
     world.set_commands(&commands).map_err(|axis| format!("the command of axis {axis} is not sound"))
 }
@@ -226,27 +309,23 @@ fn axis(m: &Model, flag: &str, name: &str) -> Result<usize, String> {
 fn schedule(args: &SimulateArgs, s: &Settings) -> Result<(u64, u64), String> {
     let interval = s.control_interval_ns as f64 * 1e-9 * s.time_scale;
     if interval <= 0.0 {
-        return Err("--time-scale 0 stops time: the duration would never be reached".into());
+        return Err("time_scale 0 stops time: the duration would never be reached".into());
     }
     if !args.duration.is_finite() || args.duration < 0.0 {
         return Err(format!("--duration {}: must be a finite number of seconds, 0 or more", args.duration));
     }
     let every = args.every.unwrap_or(interval);
-    if !every.is_finite() || every < interval * 0.999 {
-        return Err(format!("--every {every}: must be at least one control interval, {interval} s"));
+    let ratio = every / interval;
+    // Far more than rounding, far less than a mistake.
+    let whole = ratio.is_finite() && ratio >= 0.5 && (ratio - ratio.round()).abs() <= 1e-6;
+    if !whole {
+        let scaled = if s.time_scale == 1.0 { "" } else { " times the time scale" };
+        return Err(format!("--every {every}: must be a whole multiple of the control interval{scaled}, {interval} s"));
     }
-    Ok(((args.duration / interval).round() as u64, (every / interval).round() as u64))
+    Ok(((args.duration / interval).round() as u64, ratio.round() as u64))
 }
 
 fn warnings(loaded: &Loaded) -> Vec<String> {
     let told = loaded.findings.iter().filter(|f| f.severity == Severity::Warning);
     told.map(|f| format!("{}:{}: {}: {}", loaded.description.file, f.at.line, f.element, f.message)).collect()
-}
-
-fn open(path: &Path, world: &World) -> Result<CsvWriter<File>, String> {
-    let wrong = |e: std::io::Error| format!("cannot write '{}': {e}", path.display());
-    match path.extension().and_then(|e| e.to_str()) {
-        Some("csv") => CsvWriter::new(File::create(path).map_err(wrong)?, world).map_err(wrong),
-        _ => Err(format!("--out {}: must end in .csv or .mcap", path.display())),
-    }
 }

@@ -1,13 +1,15 @@
 //! A run as comma-separated values: 17 significant digits, so that a value read back has the same bits.
 
+use super::Sample;
 use crate::model::{Base, Model};
-use crate::world::{Snapshot, World};
+use crate::world::Snapshot;
 use std::io::{self, BufWriter, Write};
 
-/// Writes one row per call.
+/// Writes one row per sample.
 pub struct CsvWriter<W: Write> {
     out: BufWriter<W>,
-    snapshot: Snapshot,
+    /// The root link, if the base is free.
+    base: Option<usize>,
 }
 
 impl<W: Write> CsvWriter<W> {
@@ -16,33 +18,30 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// # Errors
     /// What the file system says.
-    pub fn new(out: W, world: &World) -> io::Result<Self> {
+    pub fn new(out: W, model: &Model) -> io::Result<Self> {
         let mut out = BufWriter::new(out);
-        writeln!(out, "{}", columns(world.model()).join(","))?;
-        Ok(Self { out, snapshot: world.new_snapshot() })
+        writeln!(out, "{}", columns(model).join(","))?;
+        Ok(Self { out, base: (model.base == Base::Free).then_some(model.root_link) })
     }
 
-    /// Writes the present state.
+    /// Writes a sample.
     ///
     /// # Errors
     /// What the file system says.
-    pub fn row(&mut self, world: &World) -> io::Result<()> {
-        world.write_snapshot(&mut self.snapshot);
-        let (m, s) = (world.model(), &self.snapshot);
-        number(&mut self.out, "", world.time())?;
-        for i in 0..m.axes.len() {
+    pub fn row(&mut self, sample: &Sample) -> io::Result<()> {
+        let (s, p) = (&sample.snapshot, &sample.momentum);
+        number(&mut self.out, "", s.stamp_ns as f64 * 1e-9)?;
+        for i in 0..s.position.len() {
             for x in [s.position[i], s.velocity[i], s.effort[i]] {
                 number(&mut self.out, ",", x)?;
             }
         }
-        if m.base == Base::Free {
-            for x in base(m, s) {
-                number(&mut self.out, ",", x)?;
-            }
-        }
-        let (e, p) = (world.energy(), world.momentum());
-        for x in [e.kinetic, e.potential].into_iter().chain(p.angular.iter().copied()).chain(p.linear.iter().copied()) {
+        for x in self.base.iter().flat_map(|root| base(*root, s)) {
             number(&mut self.out, ",", x)?;
+        }
+        let energies = [s.kinetic_energy, s.potential_energy];
+        for x in energies.iter().chain(p.angular.iter()).chain(p.linear.iter()) {
+            number(&mut self.out, ",", *x)?;
         }
         writeln!(self.out)
     }
@@ -71,8 +70,8 @@ fn columns(m: &Model) -> Vec<String> {
 }
 
 /// Pose of the root link in the world, its twist along its own axes.
-fn base(m: &Model, s: &Snapshot) -> [f64; 13] {
-    let (pose, twist) = (&s.link_pose[m.root_link], &s.link_twist[m.root_link]);
+fn base(root: usize, s: &Snapshot) -> [f64; 13] {
+    let (pose, twist) = (&s.link_pose[root], &s.link_twist[root]);
     let (p, q, w, v) = (&pose.translation, pose.rotation.coords, &twist.angular, &twist.linear);
     [p.x, p.y, p.z, q.x, q.y, q.z, q.w, w.x, w.y, w.z, v.x, v.y, v.z]
 }
