@@ -1,4 +1,5 @@
 //! The engine: order of the integrators, conservation, stops, friction, servos, bits and memory.
+#![allow(clippy::unwrap_used)] // a test may panic
 
 mod support;
 

@@ -1,7 +1,7 @@
 //! What acts on an axis besides the smooth dynamics: damping, dry friction, stops, drives.
 //!
 //! Everything stiff is implicit. The laws of one axis are a monotone staircase of torque over the velocity at the end of
-//! the step ([`law`]); all axes together are solved as a set ([`axis_set`]) with the hybrid dynamics.
+//! the step ([`law`]); all axes together are solved as a set ([`AxisSet`]) with the hybrid dynamics.
 
 mod axis_set;
 mod command;
