@@ -167,8 +167,8 @@ impl<'a> Plan<'a> {
         let counted = [
             (
                 s.fallback_steps,
-                "steps were made by semi_implicit_euler, because a stop, dry friction at rest, a servo or a \
-                                stiff viscous term acted",
+                "steps were made by semi_implicit_euler, because an axis began or ceased to stand still, a servo was on its \
+                 way, or a viscous term was stiff",
             ),
             (s.unsettled_steps, "steps ended before the axis laws had settled: allow more --iterations"),
             (s.pole_steps, "steps had a 3dof group at its pole: torques about its angles were bounded there"),
