@@ -368,13 +368,20 @@ fn shake_random_trees(iterations: u32) -> (u64, u64) {
     (unsettled, steps)
 }
 
-/// What is not a number never reaches the state.
+/// What is not a number, or has no meaning, never reaches the state.
 #[test]
 fn unsound_commands_are_refused() {
     let m = pendulum();
     let mut w = world(&m, Settings::default());
     let before = format!("{:?}", w.commands());
-    for bad in [AxisCommand::servo(f64::NAN), AxisCommand::torque(f64::INFINITY), AxisCommand::servo(f64::INFINITY)] {
+    let with_speed = |torque, speed| AxisCommand { speed, ..AxisCommand::torque(torque) };
+    for bad in [
+        AxisCommand::servo(f64::NAN),
+        AxisCommand::torque(f64::INFINITY),
+        AxisCommand::servo(f64::INFINITY),
+        with_speed(1.0, -2.0),
+        with_speed(1.0, 0.0),
+    ] {
         assert_eq!(w.set_commands(&[bad]), Err(0));
     }
     assert_eq!(format!("{:?}", w.commands()), before);

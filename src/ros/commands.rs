@@ -186,9 +186,7 @@ fn one_axis(axis: &Axis, present: &AxisCommand, message: &JointState, i: usize) 
 
 /// in torque mode, torque and speed must point the same way.
 fn consistent(axis: &Axis, c: &AxisCommand) -> Result<(), Refusal> {
-    // A comparison with NaN (= not given) is false.
-    let contradicts = c.torque * c.speed < 0.0 || (c.speed == 0.0 && c.torque.abs() > 0.0);
-    if c.mode == Mode::Torque && contradicts {
+    if c.contradicts() {
         let reason = format!(
             "axis '{}': applied torque {} with applied speed {} has no meaning; give both the same sign, or no speed",
             axis.name, c.torque, c.speed

@@ -27,8 +27,22 @@ impl AxisCommand {
     pub fn servo(target: f64) -> Self {
         Self { mode: Mode::Servo, target, ..Self::IDLE }
     }
-    /// True if every number that the mode uses is finite, or NaN where that means "not given".
+
+    /// True if every number that the mode uses is finite, or NaN where that means "not given", and if applied torque and
+    /// speed do not contradict each other.
     pub fn is_sound(&self) -> bool {
-        !self.torque.is_infinite() && !self.speed.is_infinite() && (self.mode != Mode::Servo || self.target.is_finite())
+        let finite = !self.torque.is_infinite() && !self.speed.is_infinite();
+        match self.mode {
+            Mode::Idle => finite,
+            Mode::Torque => finite && !self.contradicts(),
+            Mode::Servo => finite && self.target.is_finite(),
+        }
+    }
+
+    /// applied torque and applied speed, in torque mode, that have no meaning together: of opposite sign, or torque
+    /// at speed 0. False where one of the two is not given, since a comparison with NaN is false.
+    pub fn contradicts(&self) -> bool {
+        let opposed = self.torque * self.speed < 0.0 || (self.speed == 0.0 && self.torque.abs() > 0.0);
+        self.mode == Mode::Torque && opposed
     }
 }

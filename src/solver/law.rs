@@ -105,7 +105,7 @@ impl Law {
                 let torque = if c.torque.is_nan() { 0.0 } else { c.torque };
                 self.constant = bounded(torque, axis.max_torque);
                 let speed = given(c.speed, axis.no_load_speed).min(axis.no_load_speed);
-                if speed.is_finite() && self.constant * input.v > 0.0 {
+                if speed.is_finite() && speed > 0.0 && self.constant * input.v > 0.0 {
                     self.drive_slope = self.constant.abs() / speed;
                     self.slope += self.drive_slope;
                 }
