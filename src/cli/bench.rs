@@ -35,23 +35,23 @@ pub fn run(args: &BenchArgs) -> ExitCode {
     };
     let m = &loaded.model;
     let rows = measure(m, args.seconds.max(0.001));
-    if args.json {
-        let us: serde_json::Map<String, serde_json::Value> = rows
-            .iter()
-            .map(|r| (r.name.to_owned(), json!({"median": r.median, "low": r.low, "high": r.high})))
-            .collect();
-        println!(
-            "{:#}",
-            json!({"model": m.name, "base": args.base, "nv": m.nv, "axes": m.axes.len(), "us_per_call": us})
-        );
-    } else {
-        println!("{} ({} base, {} velocities), µs per call, thread CPU time", m.name, args.base, m.nv);
-        println!("{:<34} {:>10} {:>10} {:>10}", "", "median", "10 %", "90 %");
-        for r in &rows {
-            println!("{:<34} {:>10.3} {:>10.3} {:>10.3}", r.name, r.median, r.low, r.high);
-        }
+    super::say(&if args.json { as_json(m, &args.base, &rows) } else { as_table(m, &args.base, &rows) })
+}
+
+fn as_json(m: &Model, base: &str, rows: &[Row]) -> String {
+    let us: serde_json::Map<String, serde_json::Value> =
+        rows.iter().map(|r| (r.name.to_owned(), json!({"median": r.median, "low": r.low, "high": r.high}))).collect();
+    let out = json!({"model": m.name, "base": base, "nv": m.nv, "axes": m.axes.len(), "us_per_call": us});
+    format!("{out:#}\n")
+}
+
+fn as_table(m: &Model, base: &str, rows: &[Row]) -> String {
+    let mut text = format!("{} ({base} base, {} velocities), µs per call, thread CPU time\n", m.name, m.nv);
+    text += &format!("{:<34} {:>10} {:>10} {:>10}\n", "", "median", "10 %", "90 %");
+    for r in rows {
+        text += &format!("{:<34} {:>10.3} {:>10.3} {:>10.3}\n", r.name, r.median, r.low, r.high);
     }
-    ExitCode::SUCCESS
+    text
 }
 
 struct Row {

@@ -17,14 +17,12 @@ pub fn run(args: &InspectArgs) -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    if args.urdf_with_inertials {
-        print!("{}", loaded.published);
-    } else if args.json {
-        println!("{:#}", as_json(&loaded));
-    } else {
-        print!("{}", as_tables(&loaded));
-    }
-    ExitCode::SUCCESS
+    let text = match (args.urdf_with_inertials, args.json) {
+        (true, _) => loaded.published,
+        (_, true) => format!("{:#}\n", as_json(&loaded)),
+        _ => as_tables(&loaded),
+    };
+    super::say(&text)
 }
 
 fn as_json(l: &Loaded) -> Value {

@@ -12,6 +12,7 @@ pub mod simulate;
 
 use args::{Cli, Command};
 use clap::Parser;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Reads the command line and does what it says.
@@ -30,4 +31,15 @@ pub fn main() -> ExitCode {
 
 fn base_by_name(name: &str) -> crate::model::Base {
     if name == "free" { crate::model::Base::Free } else { crate::model::Base::Fixed }
+}
+
+/// Prints a result; failure if it cannot be written, but not for a reader that has seen enough (`| head`).
+fn say(text: &str) -> ExitCode {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            let _ = writeln!(std::io::stderr(), "error: cannot write to standard output: {error}");
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::SUCCESS,
+    }
 }

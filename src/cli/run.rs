@@ -1,7 +1,7 @@
 //! `realnoid run`: the ROS 2 node.
 
 use super::load::{Loaded, load};
-use crate::description::{Severity, render};
+use crate::description::{NOT_SIMULATED, Severity, render};
 use crate::ros::{self, Environment, Robot, RosArgs};
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -39,6 +39,7 @@ pub fn run(urdf: Option<&Path>, args: RosArgs) -> ExitCode {
         source: loaded.description.file.to_string(),
         urdf: loaded.published.as_str().into(),
         model: loaded.model.clone(),
+        pending: loaded.findings.iter().filter(|f| f.code == NOT_SIMULATED).map(|f| f.message.clone()).collect(),
     };
     match ros::run(&robot, &args, values, &environment) {
         Ok(()) => ExitCode::SUCCESS,

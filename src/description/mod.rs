@@ -21,6 +21,7 @@ mod unknown;
 mod xml;
 
 pub use finding::{Finding, Severity, render};
+pub use pending::NOT_SIMULATED;
 pub use types::*;
 
 use element::Element;

@@ -5,6 +5,9 @@ use super::element::Element;
 use super::finding::Finding;
 use super::report::Report;
 
+/// Code of the finding for a tag that is read and checked, but has no effect on the simulation yet.
+pub const NOT_SIMULATED: &str = "not-simulated-yet";
+
 /// A tag, or one attribute of it, that is not simulated yet.
 pub(super) struct Pending {
     pub tag: &'static str,
@@ -47,6 +50,6 @@ pub(super) fn note(name: &str, element: &Element, report: &mut Report) {
             Some(attribute) => (element.place_of(attribute, report), format!("<{name} {attribute}>")),
         };
         let message = format!("{what} is read but not simulated yet: {}", row.instead);
-        report.add_once(&what, Finding::note("not-simulated-yet", place, message, ""));
+        report.add_once(&what, Finding::note(NOT_SIMULATED, place, message, ""));
     }
 }

@@ -6,6 +6,7 @@ use ros2_client::qos::{Durability, History, QosProfile, WhenFull};
 use ros2_client::{MessageTypeName, Name, Node, Publisher};
 use serde::Serialize;
 use std::collections::HashSet;
+use std::io::Write;
 use std::panic::Location;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -96,7 +97,8 @@ impl Logger {
         let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         if self.0.stderr {
             let seconds = since_epoch.as_secs_f64();
-            eprintln!("[{}] [{seconds:.9}] [{}]: {message}", severity.label(), self.0.name);
+            // A closed standard error must not stop the node.
+            let _ = writeln!(std::io::stderr(), "[{}] [{seconds:.9}] [{}]: {message}", severity.label(), self.0.name);
         }
         let Some(rosout) = &self.0.rosout else { return };
         let at = Location::caller();

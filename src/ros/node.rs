@@ -12,6 +12,7 @@ use super::parameters::{Values, show};
 use super::publish_loop::PublishLoop;
 use crate::model::{Base, Model};
 use crate::world::{AxisCommand, Mode, World};
+use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread::{self, JoinHandle};
@@ -25,6 +26,8 @@ pub struct Robot {
     pub urdf: Arc<str>,
     /// The model.
     pub model: Arc<Model>,
+    /// What the URDF says and the simulation does not do yet, one line each.
+    pub pending: Vec<String>,
 }
 
 /// Simulates `robot` until SIGINT or SIGTERM. `Err` says what kept it from starting, or from going on.
@@ -44,7 +47,7 @@ pub fn run(robot: &Robot, args: &RosArgs, mut values: Values, environment: &Envi
     let plan = Plan { robot, args, environment, initial: &initial };
     let publish = PublishLoop::new(plan, Desk { commands, values, end, live }, publish_end)?;
     let connection = publish.connection();
-    print!("{}", start_report(plan, &settings, &connection.topics));
+    say(&start_report(plan, &settings, &connection.topics));
     environment.warnings.iter().for_each(|w| connection.log.warn(w));
 
     let control = ControlLoop::new(world, control_end, thread::current())?;
@@ -52,8 +55,13 @@ pub fn run(robot: &Robot, args: &RosArgs, mut values: Values, environment: &Envi
     let publish = publish.run(&stop);
     stop.store(true, Ordering::Relaxed);
     let _ = control.join();
-    print!("{}", publish?.finish());
+    say(&publish?.finish());
     Ok(())
+}
+
+/// To standard output; a reader that has gone away does not stop the node.
+fn say(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
 /// A flag that SIGINT and SIGTERM set, waking this thread.
@@ -115,11 +123,11 @@ fn settings_report(values: &Values) -> String {
 
 fn start_report(plan: Plan, settings: &str, topics: &[String]) -> String {
     let model = &plan.robot.model;
-    let mass: f64 = model.links.iter().map(|l| l.mass).sum();
     let base = if model.base == Base::Fixed { "fixed" } else { "free" };
     let mut text = format!("{}: '{}' from ", super::names::join(&plan.args.namespace, &plan.args.node), model.name);
     text += &format!("{}\n  {} links, {} axes, ", plan.robot.source, model.links.len(), model.axes.len());
-    text += &format!("{mass:.3} kg, base {base}\n  {settings}\n");
+    text += &format!("{:.3} kg, base {base}\n  {settings}\n", model.mass());
+    plan.robot.pending.iter().for_each(|p| text += &format!("  {p}\n"));
     text += &format!("  ROS domain {}, discovery range {}\n", plan.environment.domain, plan.environment.range);
     topics.iter().for_each(|t| text += &format!("  {t}\n"));
     text

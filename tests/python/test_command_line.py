@@ -10,7 +10,7 @@ from conftest import ARM, BINARY, LATCHED, Probe, Simulator, wait_until
 from geometry_msgs.msg import TwistStamped
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
-from std_msgs.msg import String
+from std_msgs.msg import Float64MultiArray, String
 
 
 def wait_for_node(probe, name, namespace):
@@ -100,3 +100,26 @@ def test_wrong_arguments_are_told_and_end_with_2(variables, arguments, message):
     result = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=10)
     assert result.returncode == 2, result.stderr
     assert message in result.stderr
+
+
+def test_the_start_report_names_what_is_not_simulated_yet():
+    """The built-in humanoid has tags whose effect comes later; each kind is named when the node starts."""
+    simulator = Simulator(domain=random.randint(0, 101), urdf=None)
+    lines = [simulator.process.stdout.readline() for _ in range(8)]
+    simulator.stop()
+    for tag in ["<chain>", "<proxy>", "<surface>"]:
+        assert any(f"{tag} is read but not simulated yet" in line for line in lines), lines
+
+
+def test_a_reader_that_goes_away_does_not_stop_the_node(start):
+    bench = start()
+    bench.simulator.process.stdout.close()
+    bench.simulator.process.stderr.close()
+    # A refused command is logged to the closed standard error.
+    publisher = bench.probe.publisher(Float64MultiArray, "effort_command")
+    publisher.publish(Float64MultiArray(data=[1.0]))
+    wait_until(lambda: bench.logged("wrong size"), what="the log on /rosout")
+    seen = len(bench.states)
+    wait_until(lambda: len(bench.states) > seen + 500, what="500 more states")
+    bench.simulator.process.send_signal(signal.SIGINT)
+    assert bench.simulator.process.wait(5) == 0
