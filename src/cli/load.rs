@@ -97,19 +97,24 @@ pub fn examine(path: Option<&Path>, base: Base, base_pose: Pose) -> Result<Exami
     Ok(Examined { file, text, findings, robot })
 }
 
-/// The joint that carries no inertia, found by the link on its body.
+/// The joint that carries no inertia, or the root link of a free base, found by the link on its body.
 fn singular_finding(d: &Description, m: &Model, body: usize) -> Finding {
     let carried = |frame: &LinkFrame| matches!(frame, LinkFrame::OnBody { body: b, .. } if *b == body);
-    let link = m.links.iter().position(|l| carried(&l.frame) && l.parent.is_some());
-    let joint = link.and_then(|l| d.joints.iter().find(|j| j.child == m.links[l].name));
+    let link = m.links.iter().position(|l| carried(&l.frame));
+    let moving = m.links.iter().position(|l| carried(&l.frame) && !l.fixed);
+    let joint = moving.or(link).and_then(|l| d.joints.iter().find(|j| j.child == m.links[l].name));
+    let (element, at) = match (joint, link) {
+        (Some(joint), _) => (format!("joint '{}'", joint.name), joint.at),
+        (None, Some(link)) => (format!("link '{}', the free base", d.links[link].name), d.links[link].at),
+        (None, None) => (format!("body {body}"), Default::default()),
+    };
     Finding {
         severity: Severity::Error,
-        code: "no-inertia",
-        message: "what hangs on this joint has no inertia in a direction in which it moves: its acceleration would be \
-                  infinite"
+        code: "singular-joint",
+        message: "what moves here has no inertia in a direction in which it moves: its acceleration would be infinite"
             .into(),
-        element: joint.map_or_else(|| format!("body {body}"), |j| format!("joint '{}'", j.name)),
-        at: joint.map_or(Default::default(), |j| j.at),
-        mend: "give the links behind it mass and inertia, or make the joint fixed".into(),
+        element,
+        at,
+        mend: "give this link, or those fixed to it, mass and inertia, or make the joint fixed".into(),
     }
 }
