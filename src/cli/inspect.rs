@@ -34,7 +34,7 @@ fn as_json(l: &Loaded) -> Value {
             "mass": mass.mass,
             "center_of_mass": mass.center.as_slice(),
             "inertia": {"ixx": i[(0, 0)], "ixy": i[(0, 1)], "ixz": i[(0, 2)], "iyy": i[(1, 1)], "iyz": i[(1, 2)], "izz": i[(2, 2)]},
-            "principal_moments": principal(mass),
+            "principal_moments": mass.principal().moments.as_slice(),
         })
     }).collect();
     let bound = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
@@ -92,7 +92,7 @@ fn link_row(name: &str, mass: &MassProperties, frame: &LinkFrame) -> String {
         let kind = if matches!(frame, LinkFrame::InGroup { .. }) { "inside a joint group" } else { "a frame" };
         return format!("{name:<28} {:>9}  {kind}\n", "-");
     }
-    let (c, p) = (&mass.center, principal(mass));
+    let (c, p) = (&mass.center, mass.principal().moments);
     format!(
         "{name:<28} {:>9.4}  {:>8.4} {:>8.4} {:>8.4}  {:>9.3e} {:>9.3e} {:>9.3e}\n",
         mass.mass, c.x, c.y, c.z, p[0], p[1], p[2]
@@ -131,11 +131,4 @@ fn effects_row(e: &Effects) -> String {
         if names.is_empty() { "none".into() } else { names.join(", ") }
     };
     format!("\neffects that this scene calls for: {}; not called for, not built: {}\n", of(true), of(false))
-}
-
-/// Principal moments, ascending, kg·m².
-fn principal(mass: &MassProperties) -> [f64; 3] {
-    let mut p: [f64; 3] = mass.inertia.symmetric_eigenvalues().into();
-    p.sort_by(f64::total_cmp);
-    p
 }

@@ -3,6 +3,7 @@
 //! Nothing is inferred here: a value that the text does not give is `None`, an angle is what was written
 //! (radians), and every item keeps its [`Position`]. Units are SI, frames REP-103 unless said otherwise.
 
+use crate::math::{Pose, Quat, Vec3, from_roll_pitch_yaw};
 use std::sync::Arc;
 
 /// A place in the text: 1-based line and column, and the byte range for underlining.
@@ -44,6 +45,18 @@ pub struct Origin {
     pub xyz: [f64; 3],
     /// Fixed-axis roll, pitch, yaw, radians (URDF convention: R = Rz(yaw) Ry(pitch) Rx(roll)).
     pub rpy: [f64; 3],
+}
+
+impl Origin {
+    /// As a rotation, with the same bits on every machine.
+    pub fn rotation(&self) -> Quat {
+        from_roll_pitch_yaw(self.rpy)
+    }
+
+    /// As a rigid transform: coordinates in the placed frame → coordinates in the parent frame.
+    pub fn pose(&self) -> Pose {
+        Pose::from_parts(Vec3::from(self.xyz).into(), self.rotation())
+    }
 }
 
 /// `<link>`.

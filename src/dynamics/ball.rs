@@ -119,6 +119,14 @@ fn project<T: Real>(inverse: &S3<T>, input: &BallIn<T>) -> (S3<T>, V3<T>) {
 }
 
 impl<T: Real> BallIn<T> {
+    /// Adds a lock (three at most) and returns its index.
+    pub fn add_lock(&mut self, gradient: V3<T>, acceleration: T) -> usize {
+        let index = self.locks;
+        self.lock[index] = BallLock { gradient, acceleration, reaction: T::of(0.0) };
+        self.locks += 1;
+        index
+    }
+
     /// Torques along the locked gradients: the λ of `D ω̇ = τ − n − Uᵀ a + G λ`, by backward substitution.
     #[inline(always)]
     pub(crate) fn react(&mut self, ball: &Ball<T>, a: Spatial<T>) {

@@ -189,7 +189,6 @@ pub struct StepReport {
 /// Buffers of the stages of RK4; made only when RK4 is chosen.
 #[derive(Clone, Debug, Default)]
 struct Stages {
-    start: State,
     rates: Vec<f64>,
     sum_q: Vec<f64>,
     sum_v: Vec<f64>,
@@ -225,7 +224,6 @@ impl Rbx {
     /// Makes the memory that an integrator needs, so that steps make none.
     pub fn prepare(&mut self, m: &Model, integrator: Integrator) {
         self.stages = (integrator == Integrator::Rk4).then(|| Stages {
-            start: self.state.clone(),
             rates: vec![0.0; m.nq],
             sum_q: vec![0.0; m.nq],
             sum_v: vec![0.0; m.nv],
@@ -237,15 +235,11 @@ impl Rbx {
         let mut report = StepReport::default();
         self.before.copy_from(&self.state);
         report.at_pole = self.axes.prepare(m, self.state.as_ref(), commands, m.effects, s.h);
-        if s.integrator == Integrator::SemiImplicitEuler {
-            report.unsettled = !self.euler(m, s).settled;
-        } else if !self.rk4(m, s) {
-            self.state.copy_from(&self.before);
-            self.axes.prepare(m, self.state.as_ref(), commands, m.effects, s.h);
-            report.fell_back = true;
+        let explicit = s.integrator == Integrator::Rk4;
+        if !(explicit && self.rk4(m, s)) {
+            report.fell_back = explicit;
             report.unsettled = !self.euler(m, s).settled;
         }
-        self.state.read_angles(m);
         if !self.state.finite() {
             self.state.copy_from(&self.before);
             report.diverged = true;
@@ -256,10 +250,11 @@ impl Rbx {
     fn euler(&mut self, m: &Model, s: &StepSettings) -> Outcome {
         let outcome = self.axes.solve(m, &mut self.ws, self.state.as_ref(), (s.gravity, s.h, s.passes), &mut self.qdd);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
+        self.state.read_angles(m);
         outcome
     }
 
-    /// Quaternions are integrated as four numbers and made unit again at the end, which keeps the order.
+    /// False, with the state as before, if the step is not smooth.
     fn rk4(&mut self, m: &Model, s: &StepSettings) -> bool {
         if !self.axes.is_smooth() {
             return false;
@@ -267,19 +262,23 @@ impl Rbx {
         let Some(mut st) = self.stages.take() else { return false };
         let smooth = self.rk4_stages(m, s, &mut st);
         self.stages = Some(st);
+        if !smooth {
+            self.state.copy_from(&self.before);
+            self.axes.update_rates(m, self.state.as_ref());
+        }
         smooth
     }
 
+    /// Quaternions are integrated as four numbers and made unit again at the end, which keeps the order.
     fn rk4_stages(&mut self, m: &Model, s: &StepSettings, st: &mut Stages) -> bool {
-        st.start.copy_from(&self.state);
         st.sum_q.fill(0.0);
         st.sum_v.fill(0.0);
         for (stage, (ahead, weight)) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)].into_iter().enumerate() {
             if stage > 0 {
-                for (x, (x0, r)) in self.state.q.iter_mut().zip(st.start.q.iter().zip(&st.rates)) {
+                for (x, (x0, r)) in self.state.q.iter_mut().zip(self.before.q.iter().zip(&st.rates)) {
                     *x = x0 + ahead * s.h * r;
                 }
-                for (x, (x0, a)) in self.state.v.iter_mut().zip(st.start.v.iter().zip(&self.qdd)) {
+                for (x, (x0, a)) in self.state.v.iter_mut().zip(self.before.v.iter().zip(&self.qdd)) {
                     *x = x0 + ahead * s.h * a;
                 }
                 self.state.read_angles(m);
@@ -293,10 +292,10 @@ impl Rbx {
             accumulate(&mut st.sum_q, &st.rates, weight);
             accumulate(&mut st.sum_v, &self.qdd, weight);
         }
-        for (x, (x0, sum)) in self.state.q.iter_mut().zip(st.start.q.iter().zip(&st.sum_q)) {
+        for (x, (x0, sum)) in self.state.q.iter_mut().zip(self.before.q.iter().zip(&st.sum_q)) {
             *x = x0 + s.h / 6.0 * sum;
         }
-        for (x, (x0, sum)) in self.state.v.iter_mut().zip(st.start.v.iter().zip(&st.sum_v)) {
+        for (x, (x0, sum)) in self.state.v.iter_mut().zip(self.before.v.iter().zip(&st.sum_v)) {
             *x = x0 + s.h / 6.0 * sum;
         }
         normalize_all(m, &mut self.state.q);

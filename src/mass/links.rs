@@ -4,7 +4,6 @@ use super::of_shape::{Refusal, kind, of_shape};
 use super::{MassProperties, WATER_DENSITY};
 use crate::description::{Body, Description, Finding, Inertial, JointKind, Link, PlacedShape, Severity};
 use crate::math::{Mat3, Pose, Vec3};
-use crate::shape;
 use std::collections::HashMap;
 
 /// Mass properties per link, in the order of `description.links`, along the link's axes; and findings.
@@ -39,7 +38,7 @@ fn from_inertial(inertial: &Inertial) -> MassProperties {
         center: Vec3::zeros(),
         inertia: Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
     };
-    own.placed(&shape::pose(&inertial.origin))
+    own.placed(&inertial.origin.pose())
 }
 
 /// The `<body>` tag: every shape at its place, as one body.
@@ -71,7 +70,7 @@ fn from_tag(link: &Link, body: &Body, moves: bool, findings: &mut Vec<Finding>) 
 fn from_shape(placed: &PlacedShape, body: &Body) -> Result<MassProperties, Refusal> {
     let density = body.specific_gravity * WATER_DENSITY;
     let own = of_shape(&placed.geometry, body.dimension, density)?;
-    let x_ls: Pose = shape::pose(&placed.origin);
+    let x_ls: Pose = placed.origin.pose();
     Ok(own.placed(&x_ls))
 }
 
@@ -91,36 +90,35 @@ fn moving_links(description: &Description) -> Vec<bool> {
 }
 
 fn static_in_chain(link: &Link, body: &Body) -> Finding {
-    Finding {
-        severity: Severity::Error,
-        code: "static-link-in-chain",
-        message: "specific gravity 0 makes this link static, but a moving joint carries it".into(),
-        element: format!("link '{}' <body>", link.name),
-        at: body.at,
-        mend: "give a specific gravity above 0 (about 1 for a filled limb), or make the joint fixed".into(),
-    }
+    body_error(
+        (link, body),
+        "static-link-in-chain",
+        "specific gravity 0 makes this link static, but a moving joint carries it".into(),
+        "give a specific gravity above 0 (about 1 for a filled limb), or make the joint fixed",
+    )
 }
 
 fn no_density(link: &Link, body: &Body) -> Finding {
-    Finding {
-        severity: Severity::Error,
-        code: "specific-gravity",
-        message: format!("specific gravity {} is no density", body.specific_gravity),
-        element: format!("link '{}' <body>", link.name),
-        at: body.at,
-        mend: "write a number above 0: 1 is water, 2.7 aluminium, 7.8 steel; 0 makes a link of the stand static".into(),
-    }
+    body_error(
+        (link, body),
+        "specific-gravity",
+        format!("specific gravity {} is no density", body.specific_gravity),
+        "write a number above 0: 1 is water, 2.7 aluminium, 7.8 steel; 0 makes a link of the stand static",
+    )
 }
 
 fn no_shape(link: &Link, body: &Body) -> Finding {
-    Finding {
-        severity: Severity::Error,
-        code: "no-shape-for-mass",
-        message: format!("specific gravity {} needs a shape, and the link has no visual", body.specific_gravity),
-        element: format!("link '{}' <body>", link.name),
-        at: body.at,
-        mend: "add a <visual>, or <shape> elements inside <body>, or write <inertial> and drop <body>".into(),
-    }
+    body_error(
+        (link, body),
+        "no-shape-for-mass",
+        format!("specific gravity {} needs a shape, and the link has no visual", body.specific_gravity),
+        "add a <visual>, or <shape> elements inside <body>, or write <inertial> and drop <body>",
+    )
+}
+
+fn body_error((link, body): (&Link, &Body), code: &'static str, message: String, mend: &str) -> Finding {
+    let element = format!("link '{}' <body>", link.name);
+    Finding { severity: Severity::Error, code, message, element, at: body.at, mend: mend.into() }
 }
 
 fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Finding {

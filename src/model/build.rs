@@ -1,10 +1,9 @@
 //! Description + mass properties → Model.
 
 use super::{Axis, AxisKind, AxisSlot, Body, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model};
-use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind, Origin};
+use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind};
 use crate::mass::MassProperties;
-use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3, from_roll_pitch_yaw};
-use crate::shape::pose;
+use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
 use std::collections::HashMap;
 
@@ -131,7 +130,7 @@ impl<'a> Builder<'a> {
         let j = &self.d.joints[index];
         let child = self.link_index[j.child.as_str()];
         let (body, offset) = self.seats[link];
-        let frame = offset * pose(&j.origin);
+        let frame = offset * j.origin.pose();
         let joint = match j.kind {
             JointKind::Fixed => {
                 self.hang(link, child, (body, frame));
@@ -156,12 +155,12 @@ impl<'a> Builder<'a> {
     /// H, P, B → one body with a quaternion.
     fn attach_spherical(&mut self, link: usize, joints: &[usize]) -> usize {
         let [h, p, b] = [0, 1, 2].map(|k| &self.d.joints[joints[k]]);
-        let (rp, rb) = (rotation(&p.origin), rotation(&b.origin));
+        let (rp, rb) = (p.origin.rotation(), b.origin.rotation());
         let axes = [Vec3::from(h.axis), rp * Vec3::from(p.axis), rp * rb * Vec3::from(b.axis)];
         let (frame, sense) = EulerFrame::frame(&axes);
         let basis = quat(&frame);
         let (parent, offset) = self.seats[link];
-        let body = self.add_body(parent, JointType::Spherical, offset * pose(&h.origin) * basis);
+        let body = self.add_body(parent, JointType::Spherical, offset * h.origin.pose() * basis);
         let (q, v) = (self.model.bodies[body].q, self.model.bodies[body].v);
         let group = self.model.eulers.len();
         self.model.eulers.push(EulerFrame { body, q, v, sense });
@@ -176,11 +175,11 @@ impl<'a> Builder<'a> {
     /// H, P → one body with two angles.
     fn attach_universal(&mut self, link: usize, joints: &[usize]) -> usize {
         let [h, p] = [0, 1].map(|k| &self.d.joints[joints[k]]);
-        let rp = rotation(&p.origin);
+        let rp = p.origin.rotation();
         let (x, z) = (Vec3::from(h.axis), rp * Vec3::from(p.axis));
         let basis = quat(&Mat3::from_columns(&[x, z.cross(&x), z]));
         let (parent, offset) = self.seats[link];
-        let body = self.add_body(parent, JointType::Universal, offset * pose(&h.origin) * basis);
+        let body = self.add_body(parent, JointType::Universal, offset * h.origin.pose() * basis);
         let (q, v) = (self.model.bodies[body].q, self.model.bodies[body].v);
         self.slots.insert(joints[0], AxisSlot::Scalar { q, v });
         self.slots.insert(joints[1], AxisSlot::Scalar { q: q + 1, v: v + 1 });
@@ -214,15 +213,11 @@ impl<'a> Builder<'a> {
     fn seat(&mut self, link: usize, (body, offset): Seat) {
         self.seats[link] = (body, offset);
         self.model.links[link].frame = LinkFrame::OnBody { body, offset };
-        let m = &self.masses[link];
-        let r = offset.rotation.to_rotation_matrix();
-        let c = offset * nalgebra::Point3::from(m.center);
-        let (c, i) = (c.coords, r.matrix() * m.inertia * r.matrix().transpose());
-        let about_origin = i + m.mass * (Mat3::identity() * c.norm_squared() - c * c.transpose());
+        let m = self.masses[link].placed(&offset);
         let b = &mut self.model.bodies[body];
         b.mass += m.mass;
-        b.mc += V3::from(c * m.mass);
-        b.inertia += S3::from(about_origin);
+        b.mc += V3::from(m.center * m.mass);
+        b.inertia += S3::from(m.inertia_at_origin());
     }
 
     fn add_body(&mut self, parent: usize, joint: JointType, tree: Pose) -> usize {
@@ -289,10 +284,6 @@ fn world() -> Body {
         mc: V3::default(),
         inertia: S3::default(),
     }
-}
-
-fn rotation(o: &Origin) -> Quat {
-    from_roll_pitch_yaw(o.rpy)
 }
 
 fn quat(m: &Mat3) -> Quat {

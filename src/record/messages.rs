@@ -1,11 +1,11 @@
 //! The recorded ROS 2 messages as serde structs, fields in the order of their `.msg` files (CDR has no names). Arrays and
-//! strings are borrowed: a row allocates nothing.
+//! strings are borrowed: a row allocates nothing. The ros room shares those that borrow nothing.
 
-use crate::math::{self, Vec3};
-use serde::Serialize;
+use crate::math::{self, Quat, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// builtin_interfaces/Time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Time {
     /// Whole seconds.
     pub sec: i32,
@@ -32,7 +32,7 @@ pub struct Header<'a> {
 }
 
 /// rosgraph_msgs/Clock.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Clock {
     /// Simulated time.
     pub clock: Time,
@@ -54,7 +54,7 @@ pub struct JointState<'a> {
 }
 
 /// geometry_msgs/Vector3, and geometry_msgs/Point, which has the same fields.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vector3 {
     /// First component.
     pub x: f64,
@@ -71,7 +71,7 @@ impl From<Vec3> for Vector3 {
 }
 
 /// geometry_msgs/Quaternion.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quaternion {
     /// First imaginary part.
     pub x: f64,
@@ -81,6 +81,13 @@ pub struct Quaternion {
     pub z: f64,
     /// Real part.
     pub w: f64,
+}
+
+impl From<Quat> for Quaternion {
+    fn from(rotation: Quat) -> Self {
+        let q = rotation.coords;
+        Self { x: q.x, y: q.y, z: q.z, w: q.w }
+    }
 }
 
 /// geometry_msgs/Pose.
@@ -94,14 +101,12 @@ pub struct Pose {
 
 impl From<&math::Pose> for Pose {
     fn from(pose: &math::Pose) -> Self {
-        let q = pose.rotation.coords;
-        let orientation = Quaternion { x: q.x, y: q.y, z: q.z, w: q.w };
-        Self { position: pose.translation.vector.into(), orientation }
+        Self { position: pose.translation.vector.into(), orientation: pose.rotation.into() }
     }
 }
 
 /// geometry_msgs/Twist.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Twist {
     /// m/s.
     pub linear: Vector3,

@@ -3,7 +3,7 @@
 mod bag;
 mod csv;
 mod folder;
-mod messages;
+pub mod messages;
 mod metadata;
 mod sample;
 mod schema;

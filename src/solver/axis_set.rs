@@ -7,7 +7,7 @@
 
 use super::law::{Law, law};
 use super::{AxisCommand, AxisInput};
-use crate::dynamics::{BallLock, DofIn, Workspace, aba_hybrid};
+use crate::dynamics::{DofIn, Workspace, aba_hybrid};
 use crate::math::V3;
 use crate::model::{Axis, AxisSlot, Effects, EulerRates, Model};
 
@@ -45,6 +45,8 @@ pub struct AxisSet {
     /// Kinds of the riser an axis stood on at the end of the last step; 0 = it slid.
     pub(super) memory: Vec<u8>,
     moves: Vec<isize>,
+    /// Per axis of a 3DOF group: which of its group's locks is its own, while it is locked.
+    lock: Vec<usize>,
     pub(super) rates: Vec<EulerRates>,
     pub(super) speed: Vec<f64>,
     /// Per axis: drive torque really applied.
@@ -60,6 +62,7 @@ impl AxisSet {
             place: vec![0; n],
             memory: vec![0; n],
             moves: vec![0; n],
+            lock: vec![0; n],
             rates: vec![EulerRates::default(); model.eulers.len()],
             speed: vec![0.0; n],
             effort: vec![0.0; n],
@@ -130,7 +133,8 @@ impl AxisSet {
         }
     }
 
-    pub(super) fn update_rates(&mut self, m: &Model, s: StateRef) -> bool {
+    /// Takes the angles of a state; true if a 3DOF group is at its pole.
+    pub fn update_rates(&mut self, m: &Model, s: StateRef) -> bool {
         let mut at_pole = false;
         for (rates, (group, angles)) in self.rates.iter_mut().zip(m.eulers.iter().zip(s.angles)) {
             *rates = group.rates(*angles);
@@ -139,33 +143,47 @@ impl AxisSet {
         at_pole
     }
 
-    fn write_inputs(&self, m: &Model, ws: &mut Workspace<f64>, h: f64) {
-        for input in &mut ws.ball_in {
-            *input = Default::default();
-        }
-        for (i, axis) in m.axes.iter().enumerate() {
+    fn write_inputs(&mut self, m: &Model, ws: &mut Workspace<f64>, h: f64) {
+        clear_balls(ws);
+        for i in 0..m.axes.len() {
             let (law, place, v) = (&self.laws[i], self.place[i], self.speed[i]);
-            let lock = (place % 2 == 1).then(|| (law.risers[place / 2].speed - v) / h);
-            let tau = if lock.is_none() { law.flat(place / 2) - law.slope * v } else { 0.0 };
-            match axis.slot {
-                AxisSlot::Scalar { v, .. } => {
-                    ws.dofs[v] = match lock {
-                        Some(a) => DofIn::locked(a),
-                        None if law.slope > 0.0 => DofIn::implicit(tau, law.slope * h),
-                        None => DofIn::free(tau),
+            let input = if place % 2 == 1 {
+                Input::Locked((law.risers[place / 2].speed - v) / h)
+            } else {
+                Input::Sliding { torque: law.flat(place / 2) - law.slope * v, diagonal: law.slope * h }
+            };
+            self.write(m, ws, i, input);
+        }
+    }
+
+    /// Hands one axis to the hybrid dynamics, through its own coordinate or the gradient of its angle.
+    pub(super) fn write(&mut self, m: &Model, ws: &mut Workspace<f64>, i: usize, input: Input) {
+        match (m.axes[i].slot, input) {
+            (AxisSlot::Scalar { v, .. }, Input::Locked(acceleration)) => ws.dofs[v] = DofIn::locked(acceleration),
+            (AxisSlot::Scalar { v, .. }, Input::Sliding { torque, diagonal }) if diagonal > 0.0 => {
+                ws.dofs[v] = DofIn::implicit(torque, diagonal);
+            }
+            (AxisSlot::Scalar { v, .. }, Input::Sliding { torque, .. }) => ws.dofs[v] = DofIn::free(torque),
+            (AxisSlot::Euler { group, angle }, input) => {
+                let g = self.rates[group].gradient[angle];
+                let ball = &mut ws.ball_in[m.bodies[m.eulers[group].body].ball];
+                match input {
+                    Input::Locked(acceleration) => self.lock[i] = ball.add_lock(g, acceleration),
+                    Input::Sliding { torque, diagonal } => {
+                        ball.tau = g.mad(torque, ball.tau);
+                        ball.inertia.sub_outer(g * -diagonal, g);
                     }
                 }
-                AxisSlot::Euler { group, angle } => {
-                    let g = self.rates[group].gradient[angle];
-                    let input = &mut ws.ball_in[m.bodies[m.eulers[group].body].ball];
-                    if let Some(acceleration) = lock {
-                        input.lock[input.locks] = BallLock { gradient: g, acceleration, reaction: 0.0 };
-                        input.locks += 1;
-                    } else {
-                        input.tau = g.mad(tau, input.tau);
-                        input.inertia.sub_outer(g * (-law.slope * h), g);
-                    }
-                }
+            }
+        }
+    }
+
+    /// Torque that keeps a locked axis to its acceleration.
+    pub(super) fn reaction(&self, m: &Model, ws: &Workspace<f64>, i: usize) -> f64 {
+        match m.axes[i].slot {
+            AxisSlot::Scalar { v, .. } => ws.reaction[v],
+            AxisSlot::Euler { group, .. } => {
+                ws.ball_in[m.bodies[m.eulers[group].body].ball].lock[self.lock[i]].reaction
             }
         }
     }
@@ -173,27 +191,18 @@ impl AxisSet {
     /// Speed at the end of the step, and the torque of the law (without slope) that goes with it where it is locked.
     fn end(&self, m: &Model, ws: &Workspace<f64>, i: usize, (h, qdd): (f64, &[f64])) -> (f64, f64) {
         let (law, place) = (&self.laws[i], self.place[i]);
-        let locked = place % 2 == 1;
-        match m.axes[i].slot {
-            AxisSlot::Scalar { v: k, .. } => {
-                let v = if locked { law.risers[place / 2].speed } else { self.speed[i] + h * qdd[k] };
-                (v, ws.reaction[k] + law.slope * v)
-            }
+        if place % 2 == 1 {
+            let v = law.risers[place / 2].speed;
+            return (v, self.reaction(m, ws, i) + law.slope * v);
+        }
+        let acceleration = match m.axes[i].slot {
+            AxisSlot::Scalar { v: k, .. } => qdd[k],
             AxisSlot::Euler { group, angle } => {
                 let at = m.eulers[group].v;
-                let g = self.rates[group].gradient[angle];
-                let rate = g.dot(V3::new(qdd[at], qdd[at + 1], qdd[at + 2]));
-                let v = if locked { law.risers[place / 2].speed } else { self.speed[i] + h * rate };
-                (v, self.group_reaction(m, ws, i, group) + law.slope * v)
+                self.rates[group].gradient[angle].dot(V3::new(qdd[at], qdd[at + 1], qdd[at + 2]))
             }
-        }
-    }
-
-    /// Locks stand in the order of the axes, so this axis' lock is counted by the locked ones before it.
-    pub(super) fn group_reaction(&self, m: &Model, ws: &Workspace<f64>, i: usize, group: usize) -> f64 {
-        let same = |a: &Axis| matches!(a.slot, AxisSlot::Euler { group: g, .. } if g == group);
-        let before = (0..i).filter(|&k| same(&m.axes[k]) && self.place[k] % 2 == 1).count();
-        ws.ball_in[m.bodies[m.eulers[group].body].ball].lock[before.min(2)].reaction
+        };
+        (self.speed[i] + h * acceleration, 0.0)
     }
 
     /// Notes for every axis to which side it leaves its part of the law; returns how many do.
@@ -227,6 +236,21 @@ impl AxisSet {
             self.memory[i] = riser.map_or(0, |k| law.risers[k].kinds);
             self.effort[i] = law.drive_torque(v, riser.map(|k| (k, torque)));
         }
+    }
+}
+
+/// What the hybrid dynamics get of one axis.
+pub(super) enum Input {
+    /// Acceleration of the axis; for an angle of a group, gradient·ω̇.
+    Locked(f64),
+    /// Torque, and what is added to the diagonal of the mass matrix.
+    Sliding { torque: f64, diagonal: f64 },
+}
+
+/// Axes add to the inputs of their group's joint, so these start from nothing.
+pub(super) fn clear_balls(ws: &mut Workspace<f64>) {
+    for input in &mut ws.ball_in {
+        *input = Default::default();
     }
 }
 

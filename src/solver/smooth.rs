@@ -2,9 +2,9 @@
 //! method of high order may take the step. A standing axis (at rest in its friction, on its stop, at its target) is locked
 //! with no acceleration by the hybrid dynamics; whether its reaction fits is checked at every stage.
 
-use super::axis_set::{AxisSet, StateRef};
+use super::axis_set::{AxisSet, Input, StateRef, clear_balls};
 use super::law::{LOWER, Law, UPPER};
-use crate::dynamics::{BallLock, DofIn, Workspace};
+use crate::dynamics::Workspace;
 use crate::math::V3;
 use crate::model::{AxisSlot, Model};
 
@@ -27,29 +27,20 @@ impl AxisSet {
     /// Writes the laws at a state into the inputs of the hybrid dynamics, explicitly.
     pub fn write_smooth(&mut self, m: &Model, ws: &mut Workspace<f64>, s: StateRef) {
         self.update_rates(m, s);
-        for input in &mut ws.ball_in {
-            *input = Default::default();
-        }
+        clear_balls(ws);
         for (i, axis) in m.axes.iter().enumerate() {
-            let (_, v) = self.axis_state(m, axis, s);
-            let standing = self.place[i] % 2 == 1;
-            let torque = if standing { 0.0 } else { self.laws[i].flat(self.place[i] / 2) - self.laws[i].slope * v };
-            match axis.slot {
-                AxisSlot::Scalar { v: k, .. } => {
-                    ws.dofs[k] = if standing { DofIn::locked(0.0) } else { DofIn::free(torque) };
+            let input = match (self.place[i] % 2 == 1, axis.slot) {
+                (false, _) => {
+                    let (_, v) = self.axis_state(m, axis, s);
+                    let torque = self.laws[i].flat(self.place[i] / 2) - self.laws[i].slope * v;
+                    Input::Sliding { torque, diagonal: 0.0 }
                 }
-                AxisSlot::Euler { group, angle } => {
-                    let input = &mut ws.ball_in[m.bodies[m.eulers[group].body].ball];
-                    let gradient = self.rates[group].gradient[angle];
-                    if standing {
-                        let acceleration = gradient.dot(self.turning(m, s, group));
-                        input.lock[input.locks] = BallLock { gradient, acceleration, reaction: 0.0 };
-                        input.locks += 1;
-                    } else {
-                        input.tau = gradient.mad(torque, input.tau);
-                    }
+                (true, AxisSlot::Scalar { .. }) => Input::Locked(0.0),
+                (true, AxisSlot::Euler { group, angle }) => {
+                    Input::Locked(self.rates[group].gradient[angle].dot(self.turning(m, s, group)))
                 }
-            }
+            };
+            self.write(m, ws, i, input);
         }
     }
 
@@ -64,18 +55,11 @@ impl AxisSet {
     pub fn stage_fits(&self, m: &Model, ws: &Workspace<f64>, h: f64) -> bool {
         (0..self.laws.len()).all(|i| {
             if self.place[i] % 2 == 1 {
-                return self.laws[i].step(self.place[i], 0.0, self.standing_torque(m, ws, i)) == 0;
+                return self.laws[i].step(self.place[i], 0.0, self.reaction(m, ws, i)) == 0;
             }
             let slope = self.laws[i].slope;
             slope == 0.0 || slope * h * ws.mobility(m, i) < STIFF
         })
-    }
-
-    fn standing_torque(&self, m: &Model, ws: &Workspace<f64>, i: usize) -> f64 {
-        match m.axes[i].slot {
-            AxisSlot::Scalar { v, .. } => ws.reaction[v],
-            AxisSlot::Euler { group, .. } => self.group_reaction(m, ws, i, group),
-        }
     }
 
     /// True if after the step every sliding axis is still on its flat, and inside its stops.
@@ -96,7 +80,7 @@ impl AxisSet {
             let k = self.place[i] / 2;
             let standing = self.place[i] % 2 == 1;
             self.memory[i] = if standing { self.laws[i].risers[k].kinds } else { 0 };
-            let riser = standing.then(|| (k, self.standing_torque(m, ws, i)));
+            let riser = standing.then(|| (k, self.reaction(m, ws, i)));
             self.effort[i] = self.laws[i].drive_torque(v, riser);
         }
     }

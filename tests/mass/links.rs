@@ -3,7 +3,6 @@
 use nalgebra::{Matrix3, Vector3};
 use realnoid::description::{self, Description, Origin, Severity};
 use realnoid::mass::{link_masses, with_inertials};
-use realnoid::shape;
 
 /// A robot of these links and joints, which must read without errors.
 fn robot(elements: &str) -> Description {
@@ -186,10 +185,8 @@ fn inertials_are_put_in_to_the_last_bit_and_nothing_else_changes() {
 
 #[test]
 fn urdf_origins_turn_about_fixed_axes_roll_first() {
-    let x = shape::pose(&Origin {
-        xyz: [1.0, 0.0, 0.0],
-        rpy: [std::f64::consts::FRAC_PI_2, 0.0, std::f64::consts::FRAC_PI_2],
-    });
+    let x =
+        Origin { xyz: [1.0, 0.0, 0.0], rpy: [std::f64::consts::FRAC_PI_2, 0.0, std::f64::consts::FRAC_PI_2] }.pose();
     let y = x * nalgebra::Point3::new(0.0, 1.0, 0.0);
     assert!((y.coords - Vector3::new(1.0, 0.0, 1.0)).norm() < 1e-15);
 }

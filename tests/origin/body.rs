@@ -4,7 +4,7 @@ use super::reader::{read, zero_pose};
 use realnoid::description::Description;
 use realnoid::mass::{MassProperties, link_masses};
 use realnoid::math::{Mat3, Vec3};
-use realnoid::shape::{Bounds, bounds, pose};
+use realnoid::shape::{Bounds, bounds};
 
 /// Mirrors Y.
 const MIRROR: Mat3 = Mat3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0);
@@ -26,7 +26,7 @@ fn visual_bounds(description: &Description, link: impl Fn(&str) -> bool) -> Boun
     let poses = zero_pose(description);
     let links = description.links.iter().filter(|l| link(&l.name));
     let placed =
-        links.flat_map(|l| l.visuals.iter().map(|v| bounds(&v.geometry, &(poses[l.name.as_str()] * pose(&v.origin)))));
+        links.flat_map(|l| l.visuals.iter().map(|v| bounds(&v.geometry, &(poses[l.name.as_str()] * v.origin.pose()))));
     placed.map(Option::unwrap).reduce(|a, b| a.union(&b)).unwrap()
 }
 

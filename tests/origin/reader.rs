@@ -2,7 +2,6 @@
 
 use realnoid::description::{self, Description};
 use realnoid::math::Pose;
-use realnoid::shape;
 use roxmltree::Node;
 use std::collections::HashMap;
 
@@ -35,7 +34,7 @@ pub fn zero_pose(description: &Description) -> HashMap<&str, Pose> {
         let before = poses.len();
         for j in &description.joints {
             if let Some(parent) = poses.get(j.parent.as_str()) {
-                poses.insert(&j.child, parent * shape::pose(&j.origin));
+                poses.insert(&j.child, parent * j.origin.pose());
             }
         }
         assert!(poses.len() > before, "links that no joint connects to base_link");

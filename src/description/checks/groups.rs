@@ -5,8 +5,7 @@ use super::super::finding::Finding;
 use super::super::report::Report;
 use super::super::tags::robot::RobotTags;
 use super::super::{Description, GroupKind, Joint, JointGroup, JointKind, Link, suggest};
-use crate::math::Vec3;
-use nalgebra::Rotation3;
+use crate::math::{Quat, Vec3};
 use std::collections::HashMap;
 
 /// Metres, and cosine of the angle between axes: what rounding in a text may leave.
@@ -206,12 +205,11 @@ fn refuse_massive_between((upper, lower): (&str, &str), link: &Link, element: &E
 
 /// At zero angles every axis of the stack is perpendicular to every other one.
 fn refuse_skew_axes(stack: &[Axis], element: &Element, report: &mut Report) {
-    let mut frame = Rotation3::identity();
+    let mut frame = Quat::identity();
     let mut directions: Vec<(&str, Vec3)> = vec![];
     for (i, (letter, joint)) in stack.iter().enumerate() {
         if i > 0 {
-            let [roll, pitch, yaw] = joint.origin.rpy;
-            frame *= Rotation3::from_euler_angles(roll, pitch, yaw);
+            frame *= joint.origin.rotation();
         }
         let direction = frame * Vec3::from(joint.axis);
         for (other, earlier) in &directions {

@@ -1,10 +1,9 @@
 //! Links that fixed joints hold together, as one rigid body.
 
-use super::super::{Description, JointKind, Origin};
+use super::super::{Description, JointKind};
 use super::inertias::tensor;
 use super::tree::Tree;
 use crate::math::{Mat3, Pose, Vec3};
-use nalgebra::{Translation3, UnitQuaternion};
 
 /// Mass properties of one rigid body in the frame of its first link.
 #[derive(Clone, Copy)]
@@ -27,7 +26,7 @@ pub(super) fn merge(d: &Description, tree: &Tree) -> Vec<Option<Rigid>> {
         if link.body.is_some() {
             bodies[*first] = None;
         } else if let (Some(body), Some(inertial)) = (&mut bodies[*first], &link.inertial) {
-            let center = *pose * isometry(&inertial.origin);
+            let center = *pose * inertial.origin.pose();
             let rotation = center.rotation.to_rotation_matrix();
             let position = center.translation.vector;
             let about_center = rotation * tensor(inertial.inertia) * rotation.transpose();
@@ -44,15 +43,10 @@ pub(super) fn merge(d: &Description, tree: &Tree) -> Vec<Option<Rigid>> {
 fn home(d: &Description, tree: &Tree, link: usize) -> (usize, Pose) {
     let (mut first, mut pose) = (link, Pose::identity());
     while let Some(joint) = tree.joint_above[first].filter(|j| d.joints[*j].kind == JointKind::Fixed) {
-        pose = isometry(&d.joints[joint].origin) * pose;
+        pose = d.joints[joint].origin.pose() * pose;
         first = tree.ends[joint].0;
     }
     (first, pose)
-}
-
-fn isometry(origin: &Origin) -> Pose {
-    let [roll, pitch, yaw] = origin.rpy;
-    Pose::from_parts(Translation3::from(Vec3::from(origin.xyz)), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
 }
 
 /// Inertia of a unit mass at `r` about the origin.

@@ -1,24 +1,8 @@
 //! builtin_interfaces, std_msgs and rosgraph_msgs.
 
+pub use crate::record::messages::{Clock, Time};
+
 use serde::{Deserialize, Serialize};
-
-/// builtin_interfaces/Time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Time {
-    /// Whole seconds.
-    pub sec: i32,
-    /// Rest, 0 … 999 999 999 ns.
-    pub nanosec: u32,
-}
-
-impl Time {
-    /// From nanoseconds; saturates at the ends of the 32-bit seconds of the message.
-    pub fn from_ns(ns: i64) -> Self {
-        let sec = ns.div_euclid(1_000_000_000);
-        let clamped = sec.clamp(i64::from(i32::MIN), i64::from(i32::MAX));
-        Self { sec: clamped as i32, nanosec: ns.rem_euclid(1_000_000_000) as u32 }
-    }
-}
 
 /// std_msgs/Header.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -27,13 +11,6 @@ pub struct Header {
     pub stamp: Time,
     /// Frame of the data.
     pub frame_id: String,
-}
-
-/// rosgraph_msgs/Clock.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Clock {
-    /// Simulated time.
-    pub clock: Time,
 }
 
 /// std_msgs/String.
@@ -70,16 +47,4 @@ pub struct Float64MultiArray {
     pub layout: MultiArrayLayout,
     /// Values.
     pub data: Vec<f64>,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn time_splits_into_seconds_and_a_positive_rest() {
-        assert_eq!(Time::from_ns(1_500_000_000), Time { sec: 1, nanosec: 500_000_000 });
-        assert_eq!(Time::from_ns(-1), Time { sec: -1, nanosec: 999_999_999 });
-        assert_eq!(Time::from_ns(i64::MAX).sec, i32::MAX);
-    }
 }
