@@ -23,6 +23,10 @@ pub(super) enum Domain {
     Unit,
     AtLeast(f64),
     OneOf(&'static [f64]),
+    /// A whole number from this one up, and no more than a million.
+    Whole(u32),
+    /// A whole number of either sign, with at most two digits.
+    Exponent,
 }
 
 impl Domain {
@@ -34,6 +38,8 @@ impl Domain {
             Self::Unit => (0.0..=1.0).contains(&x),
             Self::AtLeast(least) => x >= least,
             Self::OneOf(list) => list.contains(&x),
+            Self::Whole(least) => x.fract() == 0.0 && (f64::from(least)..=1e6).contains(&x),
+            Self::Exponent => x.fract() == 0.0 && x.abs() < 100.0,
         }
     }
 
@@ -45,6 +51,8 @@ impl Domain {
             Self::NonNegative => "0 or greater".into(),
             Self::Unit => "from 0 to 1".into(),
             Self::AtLeast(least) => format!("at least {least}"),
+            Self::Whole(least) => format!("a whole number, at least {least}"),
+            Self::Exponent => "a whole number with at most two digits".into(),
             Self::OneOf(list) => {
                 format!("one of {}", list.iter().map(f64::to_string).collect::<Vec<_>>().join(", "))
             }
@@ -159,7 +167,7 @@ impl<'a> Element<'a> {
     /// `count` numbers separated by blanks; `None` if it is not there, or wrong (then it is reported).
     pub fn numbers(&self, attribute: &str, count: usize, domain: Domain, report: &mut Report) -> Option<Vec<f64>> {
         let value = self.value(attribute)?;
-        let wrong = match parse_numbers(value, count) {
+        let wrong = match parse_numbers(value).and_then(|numbers| of_length(numbers, count)) {
             Ok(numbers) => match numbers.iter().find(|x| !domain.holds(**x)) {
                 None => return Some(numbers),
                 Some(x) => Wrong {
@@ -170,8 +178,22 @@ impl<'a> Element<'a> {
             },
             Err(wrong) => Wrong { message: format!("{attribute}: {}", wrong.message), ..wrong },
         };
-        report.add(Finding::error(wrong.code, self.place_of(attribute, report), wrong.message, wrong.mend));
+        self.report_wrong(attribute, wrong, report);
         None
+    }
+
+    /// Any count of finite numbers separated by blanks; `None` if it is not there, or wrong (then it is reported).
+    pub fn any_numbers(&self, attribute: &str, report: &mut Report) -> Option<Vec<f64>> {
+        let wrong = match parse_numbers(self.value(attribute)?) {
+            Ok(numbers) => return Some(numbers),
+            Err(wrong) => Wrong { message: format!("{attribute}: {}", wrong.message), ..wrong },
+        };
+        self.report_wrong(attribute, wrong, report);
+        None
+    }
+
+    fn report_wrong(&self, attribute: &str, wrong: Wrong, report: &mut Report) {
+        report.add(Finding::error(wrong.code, self.place_of(attribute, report), wrong.message, wrong.mend));
     }
 }
 
@@ -184,7 +206,7 @@ struct Wrong {
     mend: String,
 }
 
-fn parse_numbers(value: &str, count: usize) -> Result<Vec<f64>, Wrong> {
+fn parse_numbers(value: &str) -> Result<Vec<f64>, Wrong> {
     let wrong = |code, message, mend: &str| Err(Wrong { code, message, mend: mend.into() });
     if value.contains("${") || value.contains("$(") {
         return wrong("xacro-not-expanded", format!("'{value}' is an xacro expression"), super::RUN_XACRO);
@@ -203,10 +225,15 @@ fn parse_numbers(value: &str, count: usize) -> Result<Vec<f64>, Wrong> {
             }
         }
     }
+    Ok(numbers)
+}
+
+fn of_length(numbers: Vec<f64>, count: usize) -> Result<Vec<f64>, Wrong> {
     if numbers.len() == count {
         return Ok(numbers);
     }
     let plural = if count == 1 { "number is" } else { "numbers are" };
     let message = format!("{count} {plural} needed here, there are {}", numbers.len());
-    wrong("wrong-length", message, if count == 1 { "give one number" } else { "separate them by blanks: \"0 0 1\"" })
+    let mend = if count == 1 { "give one number" } else { "separate them by blanks: \"0 0 1\"" };
+    Err(Wrong { code: "wrong-length", message, mend: mend.into() })
 }

@@ -5,7 +5,7 @@ use super::finding::Finding;
 use super::origin;
 use super::report::Report;
 use super::unknown;
-use super::{Geometry, Inertial, Link, PlacedShape, shapes, tags};
+use super::{Finish, Geometry, Inertial, Link, PlacedShape, Scaling, shapes, tags};
 
 /// Elements of a link that mean something here.
 const KNOWN: &[&str] = &["inertial", "visual", "collision", "realnoid"];
@@ -91,7 +91,10 @@ fn read_placed(element: &Element, report: &mut Report) -> Option<PlacedShape> {
     let geometry = child(element, "geometry", "<geometry><box size=\"0.1 0.1 0.1\"/></geometry>", report)
         .and_then(|geometry| read_geometry(&geometry, report));
     match geometry {
-        Some(geometry) => Some(PlacedShape { at: element.place(report).at, origin, geometry }),
+        Some((geometry, finish)) => {
+            let at = element.place(report).at;
+            Some(PlacedShape { at, origin, geometry, finish, scaling: Scaling::default(), substance: None })
+        }
         None => {
             debug_assert!(report.len() > before, "a dropped shape is always reported");
             None
@@ -99,20 +102,20 @@ fn read_placed(element: &Element, report: &mut Report) -> Option<PlacedShape> {
     }
 }
 
-fn read_geometry(element: &Element, report: &mut Report) -> Option<Geometry> {
+fn read_geometry(element: &Element, report: &mut Report) -> Option<(Geometry, Finish)> {
     let Some(shape) = element.children().find(Element::is_plain) else {
         let message = "<geometry> is empty: this shape is left out".to_string();
         let mend = "put a shape inside, for example <box size=\"0.1 0.1 0.1\"/>";
         report.add(Finding::error("missing-shape", element.place(report), message, mend));
         return None;
     };
-    let geometry = shapes::read_shape(&shape, report)?;
+    let read = shapes::read_shape(&shape, report)?;
     if !shapes::is_urdf(&shape) {
-        let message = format!("<{}> is not a shape of URDF: other ROS tools may refuse the whole file", shape.tag());
+        let message = format!("this <{}> is not a shape of URDF: other ROS tools may refuse the whole file", shape.tag());
         let mend = "show a URDF shape or a mesh here, and give this one in <realnoid>: in <proxy>, or in <shape> inside <body>";
         report.add_once(shape.tag(), Finding::warning("shape-beyond-urdf", shape.place(report), message, mend));
     }
-    Some(geometry)
+    Some(read)
 }
 
 fn note_material(element: &Element, report: &mut Report) {

@@ -6,6 +6,7 @@
 mod checks;
 mod element;
 mod finding;
+mod geometry;
 mod joints;
 mod links;
 mod origin;
@@ -21,6 +22,7 @@ mod unknown;
 mod xml;
 
 pub use finding::{Finding, Severity, render};
+pub use geometry::*;
 pub use pending::NOT_SIMULATED;
 pub use types::*;
 

@@ -12,6 +12,8 @@ pub(super) enum Kind {
     Number(Domain),
     /// So many numbers, each in the domain.
     Vector(usize, Domain),
+    /// Any count of numbers.
+    Numbers,
     /// `true` or `false`.
     Flag,
     /// One of these words.
@@ -137,6 +139,7 @@ impl Attribute {
         match self.kind {
             Kind::Number(domain) => element.numbers(self.name, 1, domain, report).map(Value::Numbers),
             Kind::Vector(count, domain) => element.numbers(self.name, count, domain, report).map(Value::Numbers),
+            Kind::Numbers => element.any_numbers(self.name, report).map(Value::Numbers),
             Kind::Text => Some(Value::Word(text)),
             Kind::Flag => self.word(&["true", "false"], text, element, report).map(|word| Value::Flag(word == "true")),
             Kind::Word(words) => self.word(words, text, element, report).map(Value::Word),

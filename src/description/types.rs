@@ -3,6 +3,7 @@
 //! Nothing is inferred here: a value that the text does not give is `None`, an angle is what was written
 //! (radians), and every item keeps its [`Position`]. Units are SI, frames REP-103 unless said otherwise.
 
+use super::{Body, PlacedShape};
 use crate::math::{Pose, Quat, Vec3, from_roll_pitch_yaw};
 use std::sync::Arc;
 
@@ -97,73 +98,6 @@ pub struct Inertial {
     pub mass: f64,
     /// ixx, ixy, ixz, iyy, iyz, izz.
     pub inertia: [f64; 6],
-}
-
-/// A shape with its place in the link.
-#[derive(Clone, Debug)]
-pub struct PlacedShape {
-    /// Where the element starts.
-    pub at: Position,
-    /// Frame of the shape in the link frame.
-    pub origin: Origin,
-    /// What it is.
-    pub geometry: Geometry,
-}
-
-/// Shapes; lengths in metres. Axes of round shapes are Z, as in URDF.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the sentence at each variant tells its fields")]
-pub enum Geometry {
-    /// Full edge lengths.
-    Box { size: [f64; 3] },
-    /// Full height `length` along Z, without caps.
-    Cylinder { radius: f64, length: f64 },
-    /// A sphere.
-    Sphere { radius: f64 },
-    /// `length` is the cylindrical part, along Z; `radius_top`, `radius_bottom` differ for a tapered one.
-    Capsule { radius_top: f64, radius_bottom: f64, length: f64 },
-    /// Semi-axes.
-    Ellipsoid { radii: [f64; 3] },
-    /// Semi-axes of the cross section along X and Y, full height along Z.
-    EllipticCylinder { radius_x: f64, radius_y: f64, length: f64 },
-    /// Outer and inner radius, full height along Z.
-    Tube { outer_radius: f64, inner_radius: f64, length: f64 },
-    /// Base semi-axes, full height; base at −length/2, tip at +length/2.
-    Cone { radius_x: f64, radius_y: f64, length: f64 },
-    /// Base semi-axes (at −length/2), scale of the top section (at +length/2).
-    Frustum { radius_x: f64, radius_y: f64, top_scale: f64, length: f64 },
-    /// A file, scaled per axis.
-    Mesh { filename: String, scale: [f64; 3] },
-    /// A shape whose tag is read and checked, and whose effect comes with a later issue: its element name and
-    /// its numeric attributes in order; the components of a vector `size` are `size.0`, `size.1` ….
-    Other { kind: String, values: Vec<(String, f64)> },
-}
-
-/// Solid or hollow.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Dimension {
-    /// Filled.
-    Solid,
-    /// A shell.
-    Hollow {
-        /// Of the wall, metres.
-        thickness: f64,
-    },
-}
-
-/// `<body specific_gravity dimension thickness>`.
-#[derive(Clone, Debug)]
-pub struct Body {
-    /// Where.
-    pub at: Position,
-    /// 1 = 1000 kg/m³; 0 = static.
-    pub specific_gravity: f64,
-    /// Solid or hollow.
-    pub dimension: Dimension,
-    /// Factor on the distance used in the moment of inertia (B-18); 1 by default.
-    pub l_scale: f64,
-    /// `<shape>` children: what the mass is computed from; empty = the link's visuals.
-    pub shapes: Vec<PlacedShape>,
 }
 
 /// `<surface>` (B-8); `None` = not given, the scene's default holds.

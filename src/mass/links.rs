@@ -1,33 +1,65 @@
 //! Mass properties of every link of a description, and what there is to say about them.
 
-use super::of_shape::{Refusal, kind, of_shape};
-use super::{MassProperties, WATER_DENSITY};
-use crate::description::{Body, Description, Finding, Inertial, JointKind, Link, PlacedShape, Severity};
-use crate::math::{Mat3, Pose, Vec3};
+use super::finding;
+use super::of_shape::{Method, Refusal, ShapeMass, of_shape};
+use super::MassProperties;
+use crate::description::{Body, Description, Finding, Inertial, JointKind, Link, PlacedShape};
+use crate::math::{Mat3, Vec3};
+use crate::shape::{Meshes, Shape};
 use std::collections::HashMap;
+use std::path::Path;
 
-/// Mass properties per link, in the order of `description.links`, along the link's axes; and findings.
+/// What one link weighs, and where that comes from.
+#[derive(Clone, Debug)]
+pub struct LinkBody {
+    /// Along the link's axes; what is simulated.
+    pub properties: MassProperties,
+    /// Of the material, m³; `None` if the mass is only stated (`<inertial>`), or there is none.
+    pub volume: Option<f64>,
+    /// B-18: factor on the distance in the moment of inertia; it is already in `properties`.
+    pub l_scale: f64,
+    /// B-10: the power of ten below which tensor elements are 0; already applied to `properties`.
+    pub zero_exponent: Option<i32>,
+    /// How the mass of each shape was found, in the order of the shapes.
+    pub methods: Vec<Method>,
+}
+
+impl LinkBody {
+    fn stated(properties: MassProperties) -> Self {
+        Self { properties, volume: None, l_scale: 1.0, zero_exponent: None, methods: vec![] }
+    }
+}
+
+/// Mass properties per link, in the order of `description.links`, along the link's axes; and findings. Mesh files are
+/// looked for beside the file of the description. See [`link_bodies`].
+pub fn link_masses(description: &Description) -> (Vec<MassProperties>, Vec<Finding>) {
+    let (bodies, findings) = link_bodies(description, &Meshes::beside(Path::new(&*description.file), &[]));
+    (bodies.into_iter().map(|b| b.properties).collect(), findings)
+}
+
+/// The bodies of the links, in the order of `description.links`, and findings.
 ///
 /// A `<realnoid><body>` tag wins over `<inertial>`; a link with neither carries no mass. Where a finding is an error,
 /// that link's mass is zero and the description must not be simulated.
-pub fn link_masses(description: &Description) -> (Vec<MassProperties>, Vec<Finding>) {
+pub fn link_bodies(description: &Description, meshes: &Meshes) -> (Vec<LinkBody>, Vec<Finding>) {
     let mut findings = Vec::new();
     let moving = moving_links(description);
-    let masses = description
+    let bodies = description
         .links
         .iter()
         .zip(moving)
         .map(|(link, moves)| match (&link.body, &link.inertial) {
             (Some(body), written) => {
-                let mass = from_tag(link, body, moves, &mut findings);
-                findings.extend(written.as_ref().and_then(|w| difference(link, body, &mass, &from_inertial(w))));
-                mass
+                let found = from_tag(link, body, moves, meshes, &mut findings);
+                let stated = written.as_ref().map(from_inertial);
+                findings.extend(stated.and_then(|w| finding::difference(link, body, &found.properties, &w)));
+                found
             }
-            (None, Some(inertial)) => from_inertial(inertial),
-            (None, None) => MassProperties::ZERO,
+            (None, Some(inertial)) => LinkBody::stated(from_inertial(inertial)),
+            (None, None) => LinkBody::stated(MassProperties::ZERO),
         })
         .collect();
-    (masses, findings)
+    (bodies, findings)
 }
 
 /// `<inertial>`, turned to the link's axes.
@@ -42,36 +74,61 @@ fn from_inertial(inertial: &Inertial) -> MassProperties {
 }
 
 /// The `<body>` tag: every shape at its place, as one body.
-fn from_tag(link: &Link, body: &Body, moves: bool, findings: &mut Vec<Finding>) -> MassProperties {
-    if body.specific_gravity == 0.0 {
-        findings.extend(moves.then(|| static_in_chain(link, body)));
-        return MassProperties::ZERO;
+fn from_tag(link: &Link, body: &Body, moves: bool, meshes: &Meshes, findings: &mut Vec<Finding>) -> LinkBody {
+    let nothing = LinkBody { l_scale: body.l_scale, ..LinkBody::stated(MassProperties::ZERO) };
+    let gravity = body.substance.specific_gravity;
+    if gravity == 0.0 {
+        findings.extend(moves.then(|| finding::static_in_chain(link, body)));
+        return nothing;
     }
-    if !(body.specific_gravity > 0.0 && body.specific_gravity.is_finite()) {
-        findings.push(no_density(link, body));
-        return MassProperties::ZERO;
+    if !(gravity > 0.0 && gravity.is_finite()) {
+        findings.push(finding::no_density(link, body));
+        return nothing;
     }
     let shapes = if body.shapes.is_empty() { &link.visuals } else { &body.shapes };
     if shapes.is_empty() {
-        findings.push(no_shape(link, body));
-        return MassProperties::ZERO;
+        findings.push(finding::no_shape(link, body));
+        return nothing;
     }
     let mut parts = Vec::with_capacity(shapes.len());
     let before = findings.len();
     for shape in shapes {
-        match from_shape(shape, body) {
-            Ok(part) => parts.push(part),
-            Err(refusal) => findings.push(refused(link, shape, &refusal)),
+        match from_shape(shape, body, meshes) {
+            Ok(part) => parts.push((shape, part)),
+            Err(refusal) => findings.push(finding::refused(link, shape, &refusal)),
         }
     }
-    if findings.len() > before { MassProperties::ZERO } else { MassProperties::sum(&parts).l_scaled(body.l_scale) }
+    if findings.len() > before {
+        return nothing;
+    }
+    for (shape, part) in &parts {
+        findings.extend(part.repairs.iter().map(|repair| finding::repaired(link, shape, repair)));
+    }
+    composed(link, body, &parts, findings)
 }
 
-fn from_shape(placed: &PlacedShape, body: &Body) -> Result<MassProperties, Refusal> {
-    let density = body.specific_gravity * WATER_DENSITY;
-    let own = of_shape(&placed.geometry, body.dimension, density)?;
-    let x_ls: Pose = placed.origin.pose();
-    Ok(own.placed(&x_ls))
+/// J-6: the parts of a link as one body; then B-18, then B-10's rounding.
+fn composed(link: &Link, body: &Body, parts: &[(&PlacedShape, ShapeMass)], findings: &mut Vec<Finding>) -> LinkBody {
+    let masses: Vec<MassProperties> = parts.iter().map(|(_, part)| part.properties).collect();
+    let exact = MassProperties::sum(&masses).l_scaled(body.l_scale);
+    let properties = match body.zero_exponent {
+        Some(exponent) => exact.rounded(exponent),
+        None => exact,
+    };
+    findings.extend(body.zero_exponent.and_then(|e| finding::rounded_away(link, body, &properties, e)));
+    LinkBody {
+        properties,
+        volume: Some(parts.iter().map(|(_, part)| part.volume).sum()),
+        l_scale: body.l_scale,
+        zero_exponent: body.zero_exponent,
+        methods: parts.iter().map(|(_, part)| part.method).collect(),
+    }
+}
+
+/// One shape, at its place in the link.
+fn from_shape(placed: &PlacedShape, body: &Body, meshes: &Meshes) -> Result<ShapeMass, Refusal> {
+    let own = of_shape(&Shape::of(placed)?, &body.substance_of(placed), meshes)?;
+    Ok(ShapeMass { properties: own.properties.placed(&placed.origin.pose()), ..own })
 }
 
 /// Per link: is there a moving joint between it and the root? A cycle, which the description room reports, ends the
@@ -87,89 +144,4 @@ fn moving_links(description: &Description) -> Vec<bool> {
         steps.take(description.joints.len()).any(|&(_, moves)| moves)
     };
     description.links.iter().map(moves).collect()
-}
-
-fn static_in_chain(link: &Link, body: &Body) -> Finding {
-    body_error(
-        (link, body),
-        "static-link-in-chain",
-        "specific gravity 0 makes this link static, but a moving joint carries it".into(),
-        "give a specific gravity above 0 (about 1 for a filled limb), or make the joint fixed",
-    )
-}
-
-fn no_density(link: &Link, body: &Body) -> Finding {
-    body_error(
-        (link, body),
-        "specific-gravity",
-        format!("specific gravity {} is no density", body.specific_gravity),
-        "write a number above 0: 1 is water, 2.7 aluminium, 7.8 steel; 0 makes a link of the stand static",
-    )
-}
-
-fn no_shape(link: &Link, body: &Body) -> Finding {
-    body_error(
-        (link, body),
-        "no-shape-for-mass",
-        format!("specific gravity {} needs a shape, and the link has no visual", body.specific_gravity),
-        "add a <visual>, or <shape> elements inside <body>, or write <inertial> and drop <body>",
-    )
-}
-
-fn body_error((link, body): (&Link, &Body), code: &'static str, message: String, mend: &str) -> Finding {
-    let element = format!("link '{}' <body>", link.name);
-    Finding { severity: Severity::Error, code, message, element, at: body.at, mend: mend.into() }
-}
-
-fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Finding {
-    let (code, mend) = match refusal {
-        Refusal::Later(_) => (
-            "mass-from-shape-later",
-            "describe the mass by <body><shape> children (box, sphere, ellipsoid, cylinder, elliptic_cylinder, \
-             capsule, tube, cone, frustum), or write <inertial> and drop <body>",
-        ),
-        Refusal::NoVolume(..) => ("shape-without-volume", "write a size above 0, in metres"),
-        Refusal::NoWall(_) => ("wall-without-thickness", "write thickness=\"0.003\" (metres), or dimension=\"3d\""),
-    };
-    Finding {
-        severity: Severity::Error,
-        code,
-        message: refusal.to_string(),
-        element: format!("link '{}' <{}>", link.name, kind(&shape.geometry)),
-        at: shape.at,
-        mend: mend.into(),
-    }
-}
-
-/// Relative deviation up to which two statements of the same mass properties count as one.
-const SAME: f64 = 1e-9;
-
-/// The note on a link that gives both: the tag wins, and by how much the two differ. None if they agree, as in a text
-/// that [`super::with_inertials`] wrote.
-fn difference(link: &Link, body: &Body, tag: &MassProperties, written: &MassProperties) -> Option<Finding> {
-    let mass = tag.mass - written.mass;
-    let center = (tag.center - written.center).norm();
-    let inertia = (tag.inertia - written.inertia).abs().max();
-    let largest = written.inertia.abs().max();
-    let agree = mass.abs() <= SAME * written.mass && center <= SAME && inertia <= SAME * largest;
-    if tag.mass == 0.0 || agree {
-        return None;
-    }
-    let message = format!(
-        "both <body> and <inertial>: the tag wins. Against <inertial>, mass is {:.6} kg instead of {:.6} kg ({}), the \
-         centre of mass is {:.2} mm away, and inertia elements differ by up to {inertia:.3e} kg·m² ({} of the largest)",
-        tag.mass,
-        written.mass,
-        if written.mass > 0.0 { format!("{:+.1} %", 100.0 * mass / written.mass) } else { "from none".into() },
-        center * 1e3,
-        if largest > 0.0 { format!("{:.1} %", 100.0 * inertia / largest) } else { "more than all".into() },
-    );
-    Some(Finding {
-        severity: Severity::Note,
-        code: "inertial-and-body",
-        message,
-        element: format!("link '{}' <body>", link.name),
-        at: body.at,
-        mend: "keep one of the two: <body> to compute mass from shape, <inertial> to state it".into(),
-    })
 }

@@ -7,6 +7,7 @@ mod capsule;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+mod finding;
 mod frustum;
 mod inertials;
 mod links;
@@ -15,8 +16,8 @@ mod of_shape;
 mod properties;
 
 pub use inertials::with_inertials;
-pub use links::link_masses;
-pub use of_shape::{Refusal, of_shape};
+pub use links::{LinkBody, link_bodies, link_masses};
+pub use of_shape::{Method, Refusal, ShapeMass, of_shape};
 pub use properties::{MassProperties, Principal};
 
 /// Density of a body of specific gravity 1, kg/m³.

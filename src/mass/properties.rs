@@ -72,6 +72,12 @@ impl MassProperties {
     pub fn l_scaled(&self, l_scale: f64) -> Self {
         Self { inertia: self.inertia * (l_scale * l_scale), ..*self }
     }
+
+    /// B-10: elements of the inertia tensor below 10^`exponent` kg·m² become 0.
+    pub fn rounded(&self, exponent: i32) -> Self {
+        let least = 10.0_f64.powi(exponent);
+        Self { inertia: self.inertia.map(|x| if x.abs() < least { 0.0 } else { x }), ..*self }
+    }
 }
 
 const ZEROS: nalgebra::ArrayStorage<f64, 3, 3> = nalgebra::ArrayStorage([[0.0; 3]; 3]);

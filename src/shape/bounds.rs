@@ -48,7 +48,7 @@ pub fn bounds(geometry: &Geometry, x_as: &Pose) -> Option<Bounds> {
         Geometry::Capsule { radius_top, radius_bottom, length } => {
             half_ball(length / 2.0, radius_top, 1.0).union(&half_ball(-length / 2.0, radius_bottom, -1.0))
         }
-        Geometry::Mesh { .. } | Geometry::Other { .. } => return None,
+        _ => return None,
     })
 }
 

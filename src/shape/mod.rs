@@ -1,7 +1,19 @@
-//! Shapes: where they stand, how they scale, how far they reach.
+//! Shapes: how they scale, where they reach, what their surface is; mesh files.
 
 mod bounds;
-mod scale;
+mod check;
+mod form;
+mod meshes;
+mod outline;
+mod solid;
+mod tessellate;
+mod trimesh;
 
 pub use bounds::{Bounds, bounds};
-pub use scale::{ScaleError, scaled};
+pub use check::ShapeFault;
+pub use form::Shape;
+pub use meshes::{HeightGrid, MeshFault, Meshes};
+pub use outline::{Lathe, Piece, lathe};
+pub use solid::{SolidFault, closed_solid};
+pub use tessellate::tessellate;
+pub use trimesh::TriMesh;

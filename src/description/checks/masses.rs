@@ -32,7 +32,7 @@ fn check_body(link: &Link, report: &mut Report) {
 
 fn has_mass(link: &Link) -> bool {
     match (&link.body, &link.inertial) {
-        (Some(body), _) => body.specific_gravity > 0.0,
+        (Some(body), _) => body.substance.specific_gravity > 0.0,
         (None, Some(inertial)) => inertial.mass != 0.0 || inertial.inertia.iter().any(|i| *i != 0.0),
         (None, None) => false,
     }
@@ -69,7 +69,7 @@ fn refuse_massless_leaves(d: &Description, tree: &Tree, report: &mut Report) {
 /// Specific gravity 0 means static (B-2): that is for links that are fixed to the root.
 fn refuse_static_moving(d: &Description, tree: &Tree, report: &mut Report) {
     for (start, link) in d.links.iter().enumerate() {
-        if link.body.as_ref().is_none_or(|body| body.specific_gravity > 0.0) {
+        if link.body.as_ref().is_none_or(|body| body.substance.specific_gravity > 0.0) {
             continue;
         }
         let mut above = start;

@@ -4,13 +4,15 @@ use super::super::element::Domain;
 use super::super::pending::PENDING;
 use super::super::rules::{Attribute, Kind, Tag};
 use super::super::shapes::SHAPES;
-use super::{joint, link, robot};
+use super::{body, joint, link, robot};
 
 const DOCUMENT: &str = include_str!("../../../docs/tags.md");
 
 fn tags() -> Vec<Tag> {
     vec![
         link::BODY,
+        body::SHAPE,
+        body::PROXY,
         link::SURFACE,
         link::DAMPING,
         link::DEACTIVATE,
@@ -33,6 +35,7 @@ fn range(kind: Kind) -> String {
     match kind {
         Kind::Number(Domain::AtLeast(least)) => format!("at least {least}"),
         Kind::Number(domain) | Kind::Vector(_, domain) => domain.words(),
+        Kind::Numbers => "numbers".into(),
         Kind::Flag => "true, false".into(),
         Kind::Word(words) => words.join(", "),
         Kind::Text => "text".into(),

@@ -1,24 +1,26 @@
 //! `<realnoid>` inside `<link>`: body, proxy, surface, damping, deactivate, monitor.
 
 use super::super::element::{Domain, Element};
-use super::super::finding::Finding;
 use super::super::report::Report;
-use super::super::rules::{Attribute, Kind, Tag, Values};
-use super::super::{Body, BodyDamping, Deactivate, Dimension, MonitorFrame, PlacedShape, Surface, shapes};
+use super::super::rules::{Attribute, Kind, Tag};
+use super::super::{Body, BodyDamping, Deactivate, MonitorFrame, PlacedShape, Surface};
+use super::body::{self, DIMENSION, FLAT_SEGMENTS, LIMIT_SUBDIVISIONS, POLYGONISE, SEGMENTS, THICKNESS};
 
 const NON_NEGATIVE: Kind = Kind::Number(Domain::NonNegative);
 const UNIT: Kind = Kind::Number(Domain::Unit);
-
-/// B-3: 0.001 of the smallest system unit, the millimetre.
-const LEAST_THICKNESS: f64 = 1e-6;
 
 pub(in super::super) const BODY: Tag = Tag {
     name: "body",
     attributes: &[
         Attribute::required("specific_gravity", NON_NEGATIVE),
-        Attribute::optional("dimension", Kind::Word(&["2d", "3d"])),
-        Attribute::optional("thickness", Kind::Number(Domain::AtLeast(LEAST_THICKNESS))),
+        DIMENSION,
+        THICKNESS,
         Attribute::optional("l_scale", Kind::Number(Domain::Positive)),
+        Attribute::optional("zero_exponent", Kind::Number(Domain::Exponent)),
+        POLYGONISE,
+        SEGMENTS,
+        FLAT_SEGMENTS,
+        LIMIT_SUBDIVISIONS,
     ],
     children: &["shape"],
 };
@@ -54,10 +56,6 @@ pub(in super::super) const DEACTIVATE: Tag = Tag {
 pub(in super::super) const MONITOR: Tag =
     Tag { name: "monitor", attributes: &[Attribute::optional("frame", Kind::Word(&["body", "world"]))], children: &[] };
 
-/// What is inside of these is read by `shapes`.
-const PROXY: Tag = Tag { name: "proxy", attributes: &[], children: &[] };
-const SHAPE: Tag = Tag { name: "shape", attributes: &[], children: &[] };
-
 /// Names of the tags that may stand here.
 pub(in super::super) const NAMES: &[&str] = &["body", "proxy", "surface", "damping", "deactivate", "monitor"];
 
@@ -79,7 +77,7 @@ pub(in super::super) fn read(link: &Element, report: &mut Report) -> LinkTags {
     for element in super::collect(link, NAMES, &["proxy"], report) {
         match element.tag() {
             "body" => tags.body = read_body(&element, report),
-            "proxy" => tags.proxies.extend(read_holder(&element, report)),
+            "proxy" => tags.proxies.extend(body::proxy(&element, report)),
             "surface" => tags.surface = Some(read_surface(&element, report)),
             "damping" => tags.damping = Some(read_damping(&element, report)),
             "deactivate" => tags.deactivate = Some(read_deactivate(&element, report)),
@@ -91,42 +89,16 @@ pub(in super::super) fn read(link: &Element, report: &mut Report) -> LinkTags {
 
 fn read_body(element: &Element, report: &mut Report) -> Option<Body> {
     let values = BODY.read(element, report);
-    let shapes = element.all("shape").filter_map(|shape| read_holder(&shape, report)).collect();
+    let gravity = values.number("specific_gravity");
+    let substance = body::substance(&values, element, gravity.unwrap_or(1.0), report);
+    let shapes = element.all("shape").filter_map(|shape| body::shape(&shape, &substance, report)).collect();
     Some(Body {
         at: element.place(report).at,
-        dimension: read_dimension(&values, element, report),
-        specific_gravity: values.number("specific_gravity")?,
+        substance: gravity.map(|_| substance)?,
         l_scale: values.number_or("l_scale", 1.0),
+        zero_exponent: values.number("zero_exponent").map(|exponent| exponent as i32),
         shapes,
     })
-}
-
-fn read_dimension(values: &Values, element: &Element, report: &mut Report) -> Dimension {
-    let hollow = values.word("dimension") == Some("2d");
-    match (hollow, values.number("thickness")) {
-        (true, Some(thickness)) => Dimension::Hollow { thickness },
-        (false, None) => Dimension::Solid,
-        (true, None) => {
-            if element.value("thickness").is_none() {
-                let message = "a hollow body (dimension = 2d) needs the thickness of its wall".to_string();
-                let mend = "add thickness=\"0.003\" (metres)";
-                report.add(Finding::error("missing-attribute", element.place_of("dimension", report), message, mend));
-            }
-            Dimension::Solid
-        }
-        (false, Some(_)) => {
-            let message = "a solid body has no wall thickness".to_string();
-            let mend = "write dimension=\"2d\" for a hollow body, or take `thickness` out";
-            report.add(Finding::error("thickness", element.place_of("thickness", report), message, mend));
-            Dimension::Solid
-        }
-    }
-}
-
-fn read_holder(element: &Element, report: &mut Report) -> Option<PlacedShape> {
-    let holder = if element.tag() == PROXY.name { PROXY } else { SHAPE };
-    holder.read_attributes(element, report);
-    shapes::read_placed(element, report)
 }
 
 fn read_surface(element: &Element, report: &mut Report) -> Surface {

@@ -1,5 +1,6 @@
 //! Our element `<realnoid>`: what may stand in it inside `<link>`, `<joint>` and `<robot>`.
 
+pub(super) mod body;
 #[cfg(test)]
 mod documented;
 pub(super) mod joint;

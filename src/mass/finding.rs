@@ -1,0 +1,112 @@
+//! What there is to say about the mass of a link.
+
+use super::MassProperties;
+use super::of_shape::Refusal;
+use crate::description::{Body, Finding, Link, PlacedShape, Severity};
+use crate::shape::ShapeFault;
+
+pub(super) fn static_in_chain(link: &Link, body: &Body) -> Finding {
+    body_error(
+        (link, body),
+        "static-link-in-chain",
+        "specific gravity 0 makes this link static, but a moving joint carries it".into(),
+        "give a specific gravity above 0 (about 1 for a filled limb), or make the joint fixed",
+    )
+}
+
+pub(super) fn no_density(link: &Link, body: &Body) -> Finding {
+    body_error(
+        (link, body),
+        "specific-gravity",
+        format!("specific gravity {} is no density", body.substance.specific_gravity),
+        "write a number above 0: 1 is water, 2.7 aluminium, 7.8 steel; 0 makes a link of the stand static",
+    )
+}
+
+pub(super) fn no_shape(link: &Link, body: &Body) -> Finding {
+    body_error(
+        (link, body),
+        "no-shape-for-mass",
+        format!("specific gravity {} needs a shape, and the link has no visual", body.substance.specific_gravity),
+        "add a <visual>, or <shape> elements inside <body>, or write <inertial> and drop <body>",
+    )
+}
+
+fn body_error((link, body): (&Link, &Body), code: &'static str, message: String, mend: &str) -> Finding {
+    let element = format!("link '{}' <body>", link.name);
+    Finding { severity: Severity::Error, code, message, element, at: body.at, mend: mend.into() }
+}
+
+pub(super) fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Finding {
+    let (code, mend) = match refusal {
+        Refusal::Shape(ShapeFault::NoVolume(..)) => ("shape-without-volume", "write a size above 0, in metres"),
+        Refusal::Shape(_) => ("shape", "correct the fillet, slice or scale"),
+        Refusal::File(_) => ("mesh-file", "correct the file name, or tell the folder of a package by --package NAME=DIR"),
+        Refusal::NotSolid(_) => (
+            "mesh-without-inside",
+            "close the mesh in a mesh editor, or write dimension=\"2d\" and a thickness, or use a simpler <shape>",
+        ),
+        Refusal::Open(_) => ("surface-without-inside", "write dimension=\"2d\" and a thickness"),
+        Refusal::NoWall(_) => ("wall-without-thickness", "write thickness=\"0.003\" (metres), or dimension=\"3d\""),
+    };
+    Finding {
+        severity: Severity::Error,
+        code,
+        message: refusal.to_string(),
+        element: format!("link '{}' <{}>", link.name, shape.geometry.kind()),
+        at: shape.at,
+        mend: mend.into(),
+    }
+}
+
+/// Relative deviation up to which two statements of the same mass properties count as one.
+const SAME: f64 = 1e-9;
+
+/// The note on a link that gives both: the tag wins, and by how much the two differ. None if they agree, as in a text
+/// that [`super::with_inertials`] wrote.
+pub(super) fn difference(link: &Link, body: &Body, tag: &MassProperties, written: &MassProperties) -> Option<Finding> {
+    let mass = tag.mass - written.mass;
+    let center = (tag.center - written.center).norm();
+    let inertia = (tag.inertia - written.inertia).abs().max();
+    let largest = written.inertia.abs().max();
+    let agree = mass.abs() <= SAME * written.mass && center <= SAME && inertia <= SAME * largest;
+    if tag.mass == 0.0 || agree {
+        return None;
+    }
+    let message = format!(
+        "both <body> and <inertial>: the tag wins. Against <inertial>, mass is {:.6} kg instead of {:.6} kg ({}), the \
+         centre of mass is {:.2} mm away, and inertia elements differ by up to {inertia:.3e} kg·m² ({} of the largest)",
+        tag.mass,
+        written.mass,
+        if written.mass > 0.0 { format!("{:+.1} %", 100.0 * mass / written.mass) } else { "from none".into() },
+        center * 1e3,
+        if largest > 0.0 { format!("{:.1} %", 100.0 * inertia / largest) } else { "more than all".into() },
+    );
+    Some(Finding {
+        severity: Severity::Note,
+        code: "inertial-and-body",
+        message,
+        element: format!("link '{}' <body>", link.name),
+        at: body.at,
+        mend: "keep one of the two: <body> to compute mass from shape, <inertial> to state it".into(),
+    })
+}
+
+/// What was mended in a mesh before its mass was computed.
+pub(super) fn repaired(link: &Link, shape: &PlacedShape, repair: &str) -> Finding {
+    Finding {
+        severity: Severity::Warning,
+        code: "mesh-repaired",
+        message: repair.to_owned(),
+        element: format!("link '{}' <{}>", link.name, shape.geometry.kind()),
+        at: shape.at,
+        mend: "repair the file in a mesh editor, so that other programs see the same body".into(),
+    }
+}
+
+/// A threshold that leaves a body without inertia about some axis.
+pub(super) fn rounded_away(link: &Link, body: &Body, mass: &MassProperties, exponent: i32) -> Option<Finding> {
+    let lost = (0..3).any(|i| mass.inertia[(i, i)] == 0.0);
+    let message = format!("zero_exponent = {exponent} rounds a moment of inertia of this link to zero");
+    lost.then(|| body_error((link, body), "inertia-rounded-away", message, "write a smaller exponent"))
+}
