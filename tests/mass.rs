@@ -1,12 +1,11 @@
 //! The mass room: analytic formulas against numerical integration, rigid-body identities, and the rules for links.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail by panicking, as tests do")]
+#![allow(clippy::unwrap_used)] // a test may panic
 
 mod mass {
     mod formulas;
-    mod identities;
-    mod links;
-    mod quadrature;
-    mod random;
-    mod shapes;
+    mod kinds;
+    mod points;
+    mod round;
+    mod straight;
 }
