@@ -6,6 +6,7 @@ mod form;
 mod meshes;
 mod outline;
 mod solid;
+mod support;
 mod tessellate;
 mod trimesh;
 
@@ -15,5 +16,6 @@ pub use form::Shape;
 pub use meshes::{HeightGrid, MeshFault, Meshes};
 pub use outline::{Lathe, Piece, lathe};
 pub use solid::{SolidFault, closed_solid};
+pub use support::Support;
 pub use tessellate::{MOST_SEGMENTS, tessellate};
 pub use trimesh::TriMesh;
