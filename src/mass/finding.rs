@@ -41,7 +41,9 @@ pub(super) fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Fi
     let (code, mend) = match refusal {
         Refusal::Shape(ShapeFault::NoVolume(..)) => ("shape-without-volume", "write a size above 0, in metres"),
         Refusal::Shape(_) => ("shape", "correct the fillet, slice or scale"),
-        Refusal::File(_) => ("mesh-file", "correct the file name, or tell the folder of a package by --package NAME=DIR"),
+        Refusal::File(_) => {
+            ("mesh-file", "correct the file name, or tell the folder of a package by --package NAME=DIR")
+        }
         Refusal::NotSolid(_) => (
             "mesh-without-inside",
             "close the mesh in a mesh editor, or write dimension=\"2d\" and a thickness, or use a simpler <shape>",

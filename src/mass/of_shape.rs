@@ -106,4 +106,3 @@ fn surface(geometry: &Geometry) -> Result<Moments, Refusal> {
         _ => return Err(Refusal::Open(geometry.kind())),
     })
 }
-

@@ -182,6 +182,7 @@ fn may_polygonise(geometry: &Geometry, finish: &Finish, dimension: Dimension) ->
 fn not_polygonised(element: &Element, shape: &PlacedShape, report: &Report) -> Finding {
     let kind = shape.geometry.kind();
     let message = format!("this <{kind}> is not polygonised: it is taken as it is");
-    let mend = "polygonise takes solid boxes, spheres, capsules, cylinders, tubes, cones and frusta without slice and fillet";
+    let mend =
+        "polygonise takes solid boxes, spheres, capsules, cylinders, tubes, cones and frusta without slice and fillet";
     Finding::warning("polygonise-ignored", element.place_of("polygonise", report), message, mend)
 }
