@@ -10,6 +10,9 @@ pub enum MeshFault {
     /// No such file.
     #[error("{0}")]
     NotFound(String),
+    /// Heights that make no surface.
+    #[error("{0}")]
+    Terrain(String),
 }
 
 /// Values of a height field: rows of `columns` values, as `Heights` orders them.
