@@ -2,6 +2,7 @@
 
 mod bounds;
 mod check;
+mod collision;
 mod form;
 mod meshes;
 mod outline;
@@ -12,6 +13,7 @@ mod trimesh;
 
 pub use bounds::{Bounds, bounds};
 pub use check::ShapeFault;
+pub use collision::{CollisionSource, collision_shapes};
 pub use form::Shape;
 pub use meshes::{HeightGrid, MeshFault, Meshes};
 pub use outline::{Lathe, Piece, lathe};
