@@ -7,6 +7,7 @@ mod form;
 mod meshes;
 mod outline;
 mod solid;
+mod support;
 mod tessellate;
 mod trimesh;
 
@@ -17,5 +18,6 @@ pub use form::Shape;
 pub use meshes::{HeightGrid, LONGEST_FILE, MeshFault, Meshes, SearchPaths};
 pub use outline::{Lathe, Piece, lathe};
 pub use solid::{SolidFault, closed_solid};
+pub use support::Support;
 pub use tessellate::{MOST_SEGMENTS, tessellate};
 pub use trimesh::TriMesh;
