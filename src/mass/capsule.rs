@@ -8,7 +8,7 @@ use super::moments::Moments;
 
 /// Filled; `length` is the part between the half spheres, m. Not both radii 0.
 pub(super) fn solid(top: f64, bottom: f64, length: f64) -> Moments {
-    Moments::join(&[
+    Moments::join([
         solid_hemisphere(top).raised(length / 2.0),
         frustum::solid_between(1.0, 1.0, [bottom, top], length),
         solid_hemisphere(bottom).flipped().raised(-length / 2.0),
@@ -17,7 +17,7 @@ pub(super) fn solid(top: f64, bottom: f64, length: f64) -> Moments {
 
 /// Its whole surface.
 pub(super) fn surface(top: f64, bottom: f64, length: f64) -> Moments {
-    Moments::join(&[
+    Moments::join([
         hemisphere_surface(top).raised(length / 2.0),
         frustum::mantle(1.0, 1.0, [bottom, top], length),
         hemisphere_surface(bottom).flipped().raised(-length / 2.0),

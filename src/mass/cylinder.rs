@@ -1,5 +1,6 @@
 //! Elliptic cylinder and tube.
 
+use super::flat::disc;
 use super::frustum;
 use super::moments::Moments;
 use std::f64::consts::PI;
@@ -7,11 +8,6 @@ use std::f64::consts::PI;
 /// Filled, semi-axes `a` along X and `b` along Y, full height `length`, m.
 pub(super) fn solid(a: f64, b: f64, length: f64) -> Moments {
     Moments::new(PI * a * b * length, 0.0, [a * a / 4.0, b * b / 4.0, length * length / 12.0])
-}
-
-/// Mantle and both end discs.
-pub(super) fn surface(a: f64, b: f64, length: f64) -> Moments {
-    frustum::surface(a, b, 1.0, length)
 }
 
 /// Filled between the two radii.
@@ -24,9 +20,8 @@ pub(super) fn solid_tube(outer: f64, inner: f64, length: f64) -> Moments {
 
 /// Both mantles and both end rings.
 pub(super) fn tube_surface(outer: f64, inner: f64, length: f64) -> Moments {
-    let ring = solid_tube(outer, inner, 1.0);
-    let end = Moments::new(ring.measure, length / 2.0, [ring.mean_square.x, ring.mean_square.y, 0.0]);
-    Moments::join(&[
+    let end = disc(outer, inner).raised(length / 2.0);
+    Moments::join([
         frustum::mantle(outer, outer, [1.0, 1.0], length),
         frustum::mantle(inner, inner, [1.0, 1.0], length),
         end,

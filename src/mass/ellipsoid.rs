@@ -1,6 +1,7 @@
 //! Sphere, hemisphere and ellipsoid.
 
 use super::moments::Moments;
+use super::rules::crowded;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Filled ellipsoid with these semi-axes, m.
@@ -27,37 +28,39 @@ pub(super) fn hemisphere_surface(r: f64) -> Moments {
     Moments::new(TAU * r2, r / 2.0, [r2 / 3.0, r2 / 3.0, r2 / 12.0])
 }
 
-/// Surface of an ellipsoid. Its area is no elementary function: one octant is integrated over u = z/c and the angle φ
-/// about Z, where the surface element is √((1 − u²)(b²c²cos²φ + a²c²sin²φ) + a²b²u²) du dφ.
-pub(super) fn surface([a, b, c]: [f64; 3]) -> Moments {
+/// Surface of an ellipsoid: eight octants.
+pub(super) fn surface(radii: [f64; 3]) -> Moments {
+    let octant = octant(radii);
+    Moments::new(8.0 * octant.area, 0.0, octant.mean_square)
+}
+
+/// The part of an ellipsoid's surface where x, y and z are positive.
+pub(super) struct Octant {
+    /// m².
+    pub area: f64,
+    /// Means of x, y, z, m.
+    pub mean: [f64; 3],
+    /// Means of their squares, m².
+    pub mean_square: [f64; 3],
+}
+
+/// Its area is no elementary function: it is integrated over u = z/c and the angle φ about Z, where the surface element
+/// is √((1 − u²)(b²c²cos²φ + a²c²sin²φ) + a²b²u²) du dφ.
+pub(super) fn octant([a, b, c]: [f64; 3]) -> Octant {
     let (ab, bc, ca) = (a * b, b * c, c * a);
-    let nodes = unit_interval();
-    let (mut area, mut x2, mut y2, mut z2) = (0.0, 0.0, 0.0, 0.0);
-    for &(weight_u, u) in &nodes {
+    let (mut area, mut mean, mut mean_square) = (0.0, [0.0; 3], [0.0; 3]);
+    for &(weight_u, u) in crowded() {
         let across = (1.0 - u) * (1.0 + u);
-        for &(weight_phi, part) in &nodes {
+        for &(weight_phi, part) in crowded() {
             let (sin, cos) = (part * FRAC_PI_2).sin_cos();
             let element = (across * ((bc * cos).powi(2) + (ca * sin).powi(2)) + (ab * u).powi(2)).sqrt();
             let weight = weight_u * weight_phi * element;
             area += weight;
-            x2 += weight * across * (a * cos).powi(2);
-            y2 += weight * across * (b * sin).powi(2);
-            z2 += weight * (c * u).powi(2);
+            for (i, at) in [a * across.sqrt() * cos, b * across.sqrt() * sin, c * u].into_iter().enumerate() {
+                mean[i] += weight * at;
+                mean_square[i] += weight * at * at;
+            }
         }
     }
-    Moments::new(8.0 * FRAC_PI_2 * area, 0.0, [x2 / area, y2 / area, z2 / area])
-}
-
-/// Weights and points of the tanh–sinh rule on (0, 1). It crowds points at both ends, where the surface element of a
-/// flat or thin ellipsoid bends sharply.
-fn unit_interval() -> Vec<(f64, f64)> {
-    const STEP: f64 = 1.0 / 24.0;
-    (-84..=84)
-        .map(|k| {
-            let t = f64::from(k) * STEP;
-            let s = FRAC_PI_2 * t.sinh();
-            let weight = STEP * FRAC_PI_2 * t.cosh() / s.cosh().powi(2) / 2.0;
-            (weight, 1.0 / (1.0 + (-2.0 * s).exp()))
-        })
-        .collect()
+    Octant { area: FRAC_PI_2 * area, mean: mean.map(|sum| sum / area), mean_square: mean_square.map(|sum| sum / area) }
 }

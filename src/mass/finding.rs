@@ -41,12 +41,22 @@ pub(super) fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Fi
     let (code, mend) = match refusal {
         Refusal::Shape(ShapeFault::NoVolume(..)) => ("shape-without-volume", "write a size above 0, in metres"),
         Refusal::Shape(_) => ("shape", "correct the fillet, slice or scale"),
-        Refusal::File(_) => ("mesh-file", "correct the file name, or tell the folder of a package by --package NAME=DIR"),
+        Refusal::File(_) => {
+            ("mesh-file", "correct the file name, or tell the folder of a package by --package NAME=DIR")
+        }
         Refusal::NotSolid(_) => (
             "mesh-without-inside",
             "close the mesh in a mesh editor, or write dimension=\"2d\" and a thickness, or use a simpler <shape>",
         ),
         Refusal::Open(_) => ("surface-without-inside", "write dimension=\"2d\" and a thickness"),
+        Refusal::NoArea(_) => ("shape-without-area", "give the corners of at least one triangle that is not a line"),
+        Refusal::NoVolume(_) => (
+            "mesh-without-volume",
+            "give a mesh that encloses something, or write dimension=\"2d\" and a thickness, or use a simpler <shape>",
+        ),
+        Refusal::OutOfRange { .. } => {
+            ("mass-out-of-range", "write sizes in metres and the specific gravity as a multiple of water's")
+        }
         Refusal::NoWall(_) => ("wall-without-thickness", "write thickness=\"0.003\" (metres), or dimension=\"3d\""),
     };
     Finding {

@@ -30,7 +30,7 @@ pub(super) fn solid_between(a: f64, b: f64, [s0, s1]: [f64; 2], length: f64) -> 
 
 /// Mantle and both end discs.
 pub(super) fn surface(a: f64, b: f64, top_scale: f64, length: f64) -> Moments {
-    Moments::join(&[
+    Moments::join([
         mantle(a, b, [1.0, top_scale], length),
         disc(a, b).raised(-length / 2.0),
         disc(a * top_scale, b * top_scale).raised(length / 2.0),

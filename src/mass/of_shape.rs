@@ -1,8 +1,11 @@
-//! Which shape is computed how (B-11).
+//! Mass properties of one shape: which is computed how (B-11).
 
-use super::{MassProperties, WATER_DENSITY, capsule, cuboid, cylinder, ellipsoid, frustum, moments::Moments};
-use crate::description::{Dimension, Geometry, Substance};
-use crate::shape::{MeshFault, Meshes, Shape, ShapeFault, SolidFault};
+use super::formulas;
+use super::moments::Moments;
+use super::polygons;
+use super::{MassProperties, WATER_DENSITY};
+use crate::description::{Dimension, Geometry, Subdivision, Substance};
+use crate::shape::{MeshFault, Meshes, Shape, ShapeFault, SolidFault, closed_solid, tessellate};
 
 /// Why a shape gives no mass.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -22,6 +25,22 @@ pub enum Refusal {
     /// A wall that is none.
     #[error("a hollow body needs a wall thickness above 0; {0} m was given")]
     NoWall(f64),
+    /// Triangles whose corners lie on one line, all of them.
+    #[error("this <{0}> has no area: the corners of each of its triangles lie on one line")]
+    NoArea(&'static str),
+    /// A closed mesh that encloses nothing.
+    #[error("this <{0}> is closed but encloses no volume: what its triangles enclose cancels out")]
+    NoVolume(&'static str),
+    /// Numbers too large or too small for arithmetic.
+    #[error("the mass of this <{kind}> is no number to calculate with: volume {volume} m³, mass {mass} kg")]
+    OutOfRange {
+        /// Element name.
+        kind: &'static str,
+        /// m³.
+        volume: f64,
+        /// kg.
+        mass: f64,
+    },
 }
 
 /// How mass properties were found.
@@ -29,7 +48,7 @@ pub enum Refusal {
 pub enum Method {
     /// A closed formula.
     Formula,
-    /// Numerical integration of the exact surface, to rounding.
+    /// Numerical integration over the exact shape, to rounding.
     Quadrature,
     /// Exact integration over a polygon mesh of so many triangles.
     Polygons(usize),
@@ -53,57 +72,62 @@ pub struct ShapeMass {
 /// # Errors
 /// Why there are none.
 pub fn of_shape(shape: &Shape, substance: &Substance, meshes: &Meshes) -> Result<ShapeMass, Refusal> {
-    let _ = meshes;
-    let density = substance.specific_gravity * WATER_DENSITY;
-    let (volume, properties) = match substance.dimension {
-        Dimension::Solid => {
-            let m = solid(&shape.geometry)?;
-            (m.measure, m.mass_properties(density))
-        }
-        Dimension::Hollow { thickness } if thickness > 0.0 && thickness.is_finite() => {
-            let m = surface(&shape.geometry)?;
-            (m.measure * thickness, m.mass_properties(density * thickness))
-        }
+    let kind = shape.geometry.kind();
+    let wall = match substance.dimension {
+        Dimension::Solid if shape.is_open() => return Err(Refusal::Open(kind)),
+        Dimension::Solid => None,
+        Dimension::Hollow { thickness } if thickness > 0.0 && thickness.is_finite() => Some(thickness),
         Dimension::Hollow { thickness } => return Err(Refusal::NoWall(thickness)),
     };
-    Ok(ShapeMass { volume, properties, method: Method::Formula, repairs: vec![] })
+    let exact = match (substance.polygonise, wall) {
+        (Some(_), _) => None,
+        (None, None) => formulas::solid(shape),
+        (None, Some(_)) => formulas::surface(shape),
+    };
+    let found = match exact {
+        Some((moments, method)) => Found { moments, method, repairs: vec![] },
+        None => by_polygons(shape, substance.polygonise, wall.is_none(), meshes)?,
+    };
+    let thickness = wall.unwrap_or(1.0);
+    let volume = found.moments.measure * thickness;
+    let properties = found.moments.mass_properties(substance.specific_gravity * WATER_DENSITY * thickness);
+    if found.moments.measure == 0.0 && matches!(shape.geometry, Geometry::Triangle { .. } | Geometry::Quad { .. }) {
+        return Err(Refusal::NoArea(kind));
+    }
+    if !(volume > 0.0 && volume.is_finite() && is_finite(&properties)) {
+        return Err(Refusal::OutOfRange { kind, volume, mass: properties.mass });
+    }
+    Ok(ShapeMass { volume, properties, method: found.method, repairs: found.repairs })
 }
 
-fn solid(geometry: &Geometry) -> Result<Moments, Refusal> {
-    Ok(match *geometry {
-        Geometry::Box { size } => cuboid::solid(size),
-        Geometry::Sphere { radius } => ellipsoid::solid([radius; 3]),
-        Geometry::Ellipsoid { radii } => ellipsoid::solid(radii),
-        Geometry::Cylinder { radius, length } => cylinder::solid(radius, radius, length),
-        Geometry::EllipticCylinder { radius_x, radius_y, length } => cylinder::solid(radius_x, radius_y, length),
-        Geometry::Capsule { radius_top, radius_bottom, length } => capsule::solid(radius_top, radius_bottom, length),
-        Geometry::Tube { outer_radius, inner_radius, length } => {
-            cylinder::solid_tube(outer_radius, inner_radius, length)
-        }
-        Geometry::Cone { radius_x, radius_y, length } => frustum::solid(radius_x, radius_y, 0.0, length),
-        Geometry::Frustum { radius_x, radius_y, top_scale, length } => {
-            frustum::solid(radius_x, radius_y, top_scale, length)
-        }
-        _ => return Err(Refusal::Open(geometry.kind())),
-    })
+struct Found {
+    moments: Moments,
+    method: Method,
+    repairs: Vec<String>,
 }
 
-fn surface(geometry: &Geometry) -> Result<Moments, Refusal> {
-    Ok(match *geometry {
-        Geometry::Box { size } => cuboid::surface(size),
-        Geometry::Sphere { radius } => ellipsoid::sphere_surface(radius),
-        Geometry::Ellipsoid { radii } => ellipsoid::surface(radii),
-        Geometry::Cylinder { radius, length } => cylinder::surface(radius, radius, length),
-        Geometry::EllipticCylinder { radius_x, radius_y, length } => cylinder::surface(radius_x, radius_y, length),
-        Geometry::Capsule { radius_top, radius_bottom, length } => capsule::surface(radius_top, radius_bottom, length),
-        Geometry::Tube { outer_radius, inner_radius, length } => {
-            cylinder::tube_surface(outer_radius, inner_radius, length)
-        }
-        Geometry::Cone { radius_x, radius_y, length } => frustum::surface(radius_x, radius_y, 0.0, length),
-        Geometry::Frustum { radius_x, radius_y, top_scale, length } => {
-            frustum::surface(radius_x, radius_y, top_scale, length)
-        }
-        _ => return Err(Refusal::Open(geometry.kind())),
-    })
+fn by_polygons(
+    shape: &Shape,
+    subdivision: Option<Subdivision>,
+    solid: bool,
+    meshes: &Meshes,
+) -> Result<Found, Refusal> {
+    let kind = shape.geometry.kind();
+    // Shapes that are polygons anyway do not look at the subdivision.
+    let mesh = tessellate(shape, subdivision.unwrap_or(Subdivision { around: 3, flat: 1 }), meshes)?;
+    let (mesh, repairs) = match shape.geometry {
+        Geometry::Mesh { .. } | Geometry::SphericalTerrain { .. } if solid => closed_solid(mesh)?,
+        _ => (mesh, vec![]),
+    };
+    let method = Method::Polygons(mesh.triangles.len());
+    let moments = match solid {
+        true => polygons::solid(&mesh).ok_or(Refusal::NoVolume(kind))?,
+        false => polygons::surface(&mesh).ok_or(Refusal::NoArea(kind))?,
+    };
+    Ok(Found { moments, method, repairs })
 }
 
+fn is_finite(properties: &MassProperties) -> bool {
+    let all = properties.inertia.iter().chain(properties.center.iter()).chain([&properties.mass]);
+    all.copied().all(f64::is_finite)
+}

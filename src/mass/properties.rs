@@ -57,15 +57,7 @@ impl MassProperties {
 
     /// Principal moments and axes about the centre of mass.
     pub fn principal(&self) -> Principal {
-        let eigen = self.inertia.symmetric_eigen();
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
-        let moments = Vec3::from_fn(|i, _| eigen.eigenvalues[order[i]]);
-        let mut axes = Mat3::from_fn(|i, j| eigen.eigenvectors[(i, order[j])]);
-        if axes.determinant() < 0.0 {
-            axes.column_mut(2).neg_mut();
-        }
-        Principal { moments, axes }
+        super::jacobi::principal(&self.inertia)
     }
 
     /// B-18: inertia with every distance from the centre of mass multiplied by `l_scale`.

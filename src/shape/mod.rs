@@ -15,5 +15,5 @@ pub use form::Shape;
 pub use meshes::{HeightGrid, LONGEST_FILE, MeshFault, Meshes, SearchPaths};
 pub use outline::{Lathe, Piece, lathe};
 pub use solid::{SolidFault, closed_solid};
-pub use tessellate::tessellate;
+pub use tessellate::{MOST_SEGMENTS, tessellate};
 pub use trimesh::TriMesh;
