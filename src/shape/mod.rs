@@ -2,6 +2,7 @@
 
 mod bounds;
 mod check;
+mod collision;
 mod form;
 mod meshes;
 mod outline;
@@ -11,6 +12,7 @@ mod trimesh;
 
 pub use bounds::{Bounds, bounds};
 pub use check::ShapeFault;
+pub use collision::{CollisionSource, collision_shapes};
 pub use form::Shape;
 pub use meshes::{HeightGrid, LONGEST_FILE, MeshFault, Meshes, SearchPaths};
 pub use outline::{Lathe, Piece, lathe};

@@ -108,4 +108,7 @@ impl Inside {
             Self::Empty => MeshFault::NoTriangles { path },
         }
     }
+    /// Heights that make no surface.
+    #[error("{0}")]
+    Terrain(String),
 }
