@@ -108,7 +108,4 @@ impl Inside {
             Self::Empty => MeshFault::NoTriangles { path },
         }
     }
-    /// Heights that make no surface.
-    #[error("{0}")]
-    Terrain(String),
 }
