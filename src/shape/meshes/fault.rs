@@ -66,6 +66,9 @@ pub enum MeshFault {
         /// Its coordinates, m.
         place: [f64; 3],
     },
+    /// Heights that make no surface.
+    #[error("{0}")]
+    Terrain(String),
     /// Nothing to see.
     #[error("{path} holds no triangles")]
     NoTriangles {
