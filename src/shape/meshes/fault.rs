@@ -3,9 +3,6 @@
 /// Why a file gives no mesh, or no heights. Every message names the file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshFault {
-    /// Heights that make no surface.
-    #[error("{0}")]
-    Terrain(String),
     /// No such file; the message lists every place that was looked at.
     #[error("{0}")]
     NotFound(String),
