@@ -15,7 +15,7 @@ pub use bounds::{Bounds, bounds};
 pub use check::ShapeFault;
 pub use collision::{CollisionSource, collision_shapes};
 pub use form::Shape;
-pub use meshes::{HeightGrid, MeshFault, Meshes};
+pub use meshes::{HeightGrid, LONGEST_FILE, MeshFault, Meshes, SearchPaths};
 pub use outline::{Lathe, Piece, lathe};
 pub use solid::{SolidFault, closed_solid};
 pub use support::Support;

@@ -1,6 +1,7 @@
 //! What is simulated, for programs.
 
 use super::super::load::Loaded;
+use crate::mass::Method;
 use crate::math::Mat3;
 use crate::model::{AxisKind, AxisSlot, EFFECT_NAMES};
 use crate::monitor::{LinkValues, joint_link_values, link_values};
@@ -21,7 +22,7 @@ pub(super) fn json(l: &Loaded) -> Value {
             let mut json = weight(&values);
             let (source, shapes) = collision_shapes(read);
             json["name"] = json!(link.name);
-            json["shapes"] = body.methods.iter().map(|m| json!(format!("{m:?}"))).collect();
+            json["shapes"] = body.methods.iter().map(|m| method(*m)).collect();
             json["member_of"] = link
                 .membership
                 .as_ref()
@@ -80,6 +81,14 @@ fn weight(v: &LinkValues) -> Value {
         "principal_axes": (0..3).map(|i| principal.axes.column(i).as_slice().to_vec()).collect::<Vec<_>>(),
         "l_scale": v.l_scale,
     })
+}
+
+fn method(method: Method) -> Value {
+    match method {
+        Method::Formula => json!({"mass_by": "formula"}),
+        Method::Quadrature => json!({"mass_by": "quadrature"}),
+        Method::Polygons(triangles) => json!({"mass_by": "polygons", "triangles": triangles}),
+    }
 }
 
 fn tensor(i: &Mat3) -> Value {
