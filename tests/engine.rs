@@ -400,3 +400,20 @@ fn time_scale() {
     assert_eq!((w.time(), w.state()), (time, &state));
     assert!(w.set_settings(Settings { time_scale: 101.0, ..Settings::default() }).unwrap_err().contains("time_scale"));
 }
+
+#[test]
+fn a_world_goes_back_to_the_pose_that_it_remembers() {
+    let m = tree(&ALL, false, 7);
+    let mut w = world(&m, settings(Integrator::Rk4, 0.001, 5));
+    let (q, v) = state(&m, &mut Random(3), 0.5);
+    let start = State { q, v, angles: vec![[0.0; 3]; m.eulers.len()] };
+    w.set_initial_state(start.clone());
+    run(&mut w, 0.1);
+    let there = w.state().clone();
+    w.remember();
+    run(&mut w, 0.1);
+    assert_ne!(w.state().q, there.q, "it has moved on");
+    w.reset();
+    assert_eq!((&w.state().q, &w.state().angles), (&there.q, &there.angles), "the remembered pose");
+    assert_eq!((&w.state().v, w.time()), (&start.v, 0.0), "the velocities at start, and time 0");
+}

@@ -3,7 +3,11 @@
 
 #[path = "shape/family.rs"]
 mod family;
-#[path = "shape/surface.rs"]
-mod surface;
+#[path = "shape/measures.rs"]
+mod measures;
+#[path = "shape/platonic.rs"]
+mod platonic;
+#[path = "shape/reach.rs"]
+mod reach;
 #[path = "shape/topology.rs"]
 mod topology;

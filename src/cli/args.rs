@@ -1,7 +1,8 @@
 //! Raw arguments, as they are typed, and how single values are read.
 
+use super::load::Source;
 use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Forward dynamics of a life-size humanoid: a ROS 2 node in place of the robot, and tools around it.
 ///
@@ -23,11 +24,17 @@ pub enum Command {
     Run {
         /// URDF file; the embedded humanoid if none is given.
         urdf: Option<PathBuf>,
+        /// `--package`.
+        #[command(flatten)]
+        packages: PackageArgs,
     },
     /// Every finding in a URDF with line, column and mend; exit code 1 if one is an error.
     Check {
         /// URDF file; the embedded humanoid if none is given.
         urdf: Option<PathBuf>,
+        /// `--package`.
+        #[command(flatten)]
+        packages: PackageArgs,
     },
     /// Links, masses, inertias, axes, and the effects that the scene calls for.
     Inspect(InspectArgs),
@@ -45,14 +52,49 @@ pub enum Command {
     Evaluate(EvaluateArgs),
 }
 
+/// Where packages are that mesh files name.
+#[derive(Debug, Default, Args)]
+pub struct PackageArgs {
+    /// Folder of a package that mesh files name as package://NAME/…; asked before ROS_PACKAGE_PATH, AMENT_PREFIX_PATH
+    /// and the folders around the URDF file. As often as needed.
+    #[arg(long = "package", value_name = "NAME=DIR", value_parser = package)]
+    pub packages: Vec<(String, PathBuf)>,
+}
+
+impl PackageArgs {
+    /// The robot in `urdf` (`None`: the embedded humanoid), with these packages.
+    pub fn source<'a>(&'a self, urdf: Option<&'a Path>) -> Source<'a> {
+        Source { urdf, packages: &self.packages }
+    }
+}
+
+fn package(text: &str) -> Result<(String, PathBuf), String> {
+    match text.split_once('=') {
+        Some((name, folder)) if !name.is_empty() && !folder.is_empty() => Ok((name.to_owned(), folder.into())),
+        _ => Err("must be NAME=DIR: --package my_robot=/opt/my_robot".into()),
+    }
+}
+
 /// `inspect`.
 #[derive(Debug, Args)]
 pub struct InspectArgs {
     /// URDF file; the embedded humanoid if none is given.
     pub urdf: Option<PathBuf>,
+    /// `--package`.
+    #[command(flatten)]
+    pub packages: PackageArgs,
     /// JSON instead of tables.
     #[arg(long)]
     pub json: bool,
+    /// Every link's values in full: volume, mass, centre of mass, inertia tensor, principal moments, L scale.
+    #[arg(long, conflicts_with = "json")]
+    pub full: bool,
+    /// Unit of length in what is shown beside SI: m, cm or mm.
+    #[arg(long, default_value = "m", value_parser = ["m", "cm", "mm"])]
+    pub unit: String,
+    /// A drawing of the robot with centres of mass and principal axes.
+    #[arg(long, value_name = "FILE.svg")]
+    pub svg: Option<PathBuf>,
     /// fixed (on a test stand) or free.
     #[arg(long, default_value = "fixed", value_parser = ["fixed", "free"])]
     pub base: String,
@@ -66,6 +108,9 @@ pub struct InspectArgs {
 pub struct BenchArgs {
     /// URDF file; the embedded humanoid if none is given.
     pub urdf: Option<PathBuf>,
+    /// `--package`.
+    #[command(flatten)]
+    pub packages: PackageArgs,
     /// JSON instead of a table.
     #[arg(long)]
     pub json: bool,
@@ -82,6 +127,9 @@ pub struct BenchArgs {
 pub struct EvaluateArgs {
     /// URDF file.
     pub urdf: PathBuf,
+    /// `--package`.
+    #[command(flatten)]
+    pub packages: PackageArgs,
     /// fixed or free.
     #[arg(long, default_value = "fixed", value_parser = ["fixed", "free"])]
     pub base: String,
@@ -95,6 +143,9 @@ pub struct EvaluateArgs {
 pub struct SimulateArgs {
     /// URDF file.
     pub urdf: PathBuf,
+    /// `--package`.
+    #[command(flatten)]
+    pub packages: PackageArgs,
     /// World settings (YAML); flags win over it.
     #[arg(long)]
     pub scene: Option<PathBuf>,

@@ -26,7 +26,7 @@ pub fn cpu_seconds() -> f64 {
 
 /// Measures and prints medians in µs per call.
 pub fn run(args: &BenchArgs) -> ExitCode {
-    let loaded = match load(args.urdf.as_deref(), base_by_name(&args.base)) {
+    let loaded = match load(args.packages.source(args.urdf.as_deref()), base_by_name(&args.base)) {
         Ok(loaded) => loaded,
         Err(report) => {
             eprint!("{report}");

@@ -1,6 +1,6 @@
 //! `realnoid check`: every finding with its line and mend.
 
-use super::load::examine;
+use super::load::{Source, examine};
 use crate::description::render;
 use crate::math::Pose;
 use crate::model::Base;
@@ -8,10 +8,10 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Prints every finding in the file (`None`: the embedded humanoid) to standard output; failure if one of them is an
+/// Prints every finding in the robot's text to standard output; failure if one of them is an
 /// error, or if the file cannot be read.
-pub fn run(path: Option<&Path>) -> ExitCode {
-    match examine(path, Base::Fixed, Pose::identity()) {
+pub fn run(source: Source) -> ExitCode {
+    match examine(source, Base::Fixed, Pose::identity()) {
         Ok(examined) => {
             let mut out = std::io::stdout();
             let report = render(&examined.findings, &examined.file, &examined.text, out.is_terminal());

@@ -44,7 +44,7 @@ pub fn run(args: &EvaluateArgs) -> ExitCode {
 
 fn evaluate(args: &EvaluateArgs) -> Result<(), (u8, String)> {
     let gravity = numbers("--gravity", "X,Y,Z in m/s²", &args.gravity).map_err(|e| (2, e))?;
-    let model = load(Some(&args.urdf), base_by_name(&args.base)).map_err(|e| (1, e))?.model;
+    let model = load(args.packages.source(Some(&args.urdf)), base_by_name(&args.base)).map_err(|e| (1, e))?.model;
     let mut ws = Workspace::new(&model);
     let mut out = std::io::stdout().lock();
     for (n, line) in std::io::stdin().lock().lines().enumerate() {

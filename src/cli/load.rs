@@ -2,10 +2,11 @@
 
 use crate::description::{self, Description, Finding, Severity};
 use crate::dynamics::singular_axes;
-use crate::mass::{MassProperties, link_masses, with_inertials};
+use crate::mass::{LinkBody, MassProperties, link_bodies, with_inertials};
 use crate::math::Pose;
 use crate::model::{Base, LinkFrame, Model};
-use std::path::Path;
+use crate::shape::Meshes;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The default humanoid.
@@ -13,12 +14,23 @@ pub const EMBEDDED: &str = include_str!("../../urdf/origin.urdf");
 /// How it is called in messages.
 pub const EMBEDDED_NAME: &str = "urdf/origin.urdf";
 
+/// Which robot.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// URDF file; `None`: the embedded humanoid.
+    pub urdf: Option<&'a Path>,
+    /// Names and folders of packages.
+    pub packages: &'a [(String, PathBuf)],
+}
+
 /// What loading gives.
 pub struct Loaded {
     /// What the text says.
     pub description: Description,
-    /// Mass properties per link.
-    pub masses: Vec<MassProperties>,
+    /// What each link weighs.
+    pub bodies: Vec<LinkBody>,
+    /// The mesh files that have been read.
+    pub meshes: Meshes,
     /// What is simulated.
     pub model: Arc<Model>,
     /// Warnings and notes.
@@ -36,7 +48,9 @@ pub struct Examined {
     /// Everything found; the robot is loaded only if no error is among them.
     pub findings: Vec<Finding>,
     /// Present if nothing found is an error.
-    pub robot: Option<(Description, Vec<MassProperties>, Model)>,
+    pub robot: Option<(Description, Vec<LinkBody>, Model)>,
+    /// The mesh files that have been read.
+    pub meshes: Meshes,
 }
 
 impl Examined {
@@ -52,49 +66,55 @@ impl Examined {
     }
 }
 
-/// Loads a URDF from a file; `None` loads the embedded humanoid.
+/// Loads a robot.
 ///
 /// # Errors
 /// The printable report: every finding, or why the file could not be read.
-pub fn load(path: Option<&Path>, base: Base) -> Result<Loaded, String> {
-    load_at(path, base, Pose::identity())
+pub fn load(source: Source, base: Base) -> Result<Loaded, String> {
+    load_at(source, base, Pose::identity())
 }
 
 /// As [`load`], with the root link of a fixed base at `base_pose` in the world.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_at(path: Option<&Path>, base: Base, base_pose: Pose) -> Result<Loaded, String> {
-    let examined = examine(path, base, base_pose)?;
+pub fn load_at(source: Source, base: Base, base_pose: Pose) -> Result<Loaded, String> {
+    let examined = examine(source, base, base_pose)?;
     let report = || examined.report(Severity::Warning, false);
-    let Some((description, masses, model)) = examined.robot else { return Err(report()) };
-    let published = with_inertials(&examined.text, &masses, &description);
-    Ok(Loaded { description, masses, model: Arc::new(model), findings: examined.findings, published })
+    let Some((description, bodies, model)) = examined.robot else { return Err(report()) };
+    let published = with_inertials(&examined.text, &properties(&bodies), &description);
+    let (findings, meshes) = (examined.findings, examined.meshes);
+    Ok(Loaded { description, bodies, meshes, model: Arc::new(model), findings, published })
 }
 
-/// Reads and checks a file, or the embedded humanoid, as far as it goes.
+/// Reads and checks a robot as far as it goes.
 ///
 /// # Errors
 /// Why the file could not be read.
-pub fn examine(path: Option<&Path>, base: Base, base_pose: Pose) -> Result<Examined, String> {
-    let (file, text) = match path {
+pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, String> {
+    let (file, text) = match source.urdf {
         Some(path) => (path.display().to_string(), super::check::read_text(path)?),
         None => (EMBEDDED_NAME.to_owned(), EMBEDDED.to_owned()),
     };
     let reading = description::read(&text, &file);
+    let meshes = Meshes::beside(Path::new(&file), source.packages);
     let mut findings = reading.findings;
     let robot = reading.description.and_then(|d| {
-        let (masses, more) = link_masses(&d);
+        let (bodies, more) = link_bodies(&d, &meshes);
         findings.extend(more);
         if findings.iter().any(|f| f.severity == Severity::Error) {
             return None;
         }
-        let model = Model::build(&d, &masses, base, base_pose);
+        let model = Model::build(&d, &properties(&bodies), base, base_pose);
         let singular = singular_axes(&model);
         findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
-        singular.is_empty().then_some((d, masses, model))
+        singular.is_empty().then_some((d, bodies, model))
     });
-    Ok(Examined { file, text, findings, robot })
+    Ok(Examined { file, text, findings, robot, meshes })
+}
+
+fn properties(bodies: &[LinkBody]) -> Vec<MassProperties> {
+    bodies.iter().map(|body| body.properties).collect()
 }
 
 /// The joint that carries no inertia, or the root link of a free base, found by the link on its body.

@@ -3,6 +3,7 @@
 pub mod args;
 pub mod bench;
 pub mod check;
+pub mod drawing;
 pub mod evaluate;
 pub mod inspect;
 pub mod load;
@@ -19,9 +20,9 @@ use std::process::ExitCode;
 pub fn main() -> ExitCode {
     let (own, ros) = crate::ros::split_arguments(std::env::args_os());
     let cli = Cli::parse_from(own);
-    match cli.command.unwrap_or(Command::Run { urdf: None }) {
-        Command::Run { urdf } => run::start(urdf.as_deref(), ros),
-        Command::Check { urdf } => check::run(urdf.as_deref()),
+    match cli.command.unwrap_or(Command::Run { urdf: None, packages: Default::default() }) {
+        Command::Run { urdf, packages } => run::start(packages.source(urdf.as_deref()), ros),
+        Command::Check { urdf, packages } => check::run(packages.source(urdf.as_deref())),
         Command::Inspect(args) => inspect::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Bench(args) => bench::run(&args),

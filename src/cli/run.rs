@@ -1,32 +1,31 @@
 //! `realnoid run`: the ROS 2 node.
 
-use super::load::{Loaded, load};
+use super::load::{Loaded, Source, load};
 use crate::description::{NOT_SIMULATED, Severity, render};
 use crate::ros::{self, Environment, Robot, RosArgs};
 use std::ffi::OsString;
 use std::io::IsTerminal;
-use std::path::Path;
 use std::process::ExitCode;
 
 /// Exit code for a command line, parameter file or environment that makes no sense.
 const USAGE: u8 = 2;
 
 /// Parses the arguments that followed `--ros-args`, then as [`run`].
-pub fn start(urdf: Option<&Path>, ros_arguments: Vec<OsString>) -> ExitCode {
+pub fn start(source: Source, ros_arguments: Vec<OsString>) -> ExitCode {
     match RosArgs::parse(ros_arguments) {
-        Ok(args) => run(urdf, args),
+        Ok(args) => run(source, args),
         Err(reason) => fail(&reason, USAGE),
     }
 }
 
-/// Simulates `urdf` (`None`: the embedded humanoid) as a ROS 2 node until SIGINT or SIGTERM. Exit codes: 0 after a
+/// Simulates a robot as a ROS 2 node until SIGINT or SIGTERM. Exit codes: 0 after a
 /// clean end, 1 if the robot cannot be loaded or ROS not be joined, 2 for wrong arguments, parameters or environment.
-pub fn run(urdf: Option<&Path>, args: RosArgs) -> ExitCode {
+pub fn run(source: Source, args: RosArgs) -> ExitCode {
     let ((values, warnings), environment) = match args.values().and_then(|v| Ok((v, Environment::read()?))) {
         Ok(checked) => checked,
         Err(reason) => return fail(&reason, USAGE),
     };
-    let loaded = match load(urdf, values.base()) {
+    let loaded = match load(source, values.base()) {
         Ok(loaded) => loaded,
         Err(report) => {
             eprintln!("{}", report.trim_end());

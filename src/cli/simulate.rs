@@ -103,7 +103,7 @@ impl<'a> Plan<'a> {
         let settings = settings(args, &scene).map_err(usage)?;
         let base = base(args, &scene);
         let pose = base_pose(args, &scene).map_err(usage)?;
-        let loaded = load_at(Some(&args.urdf), base, pose).map_err(|reason| (1, reason))?;
+        let loaded = load_at(args.packages.source(Some(&args.urdf)), base, pose).map_err(|reason| (1, reason))?;
         let mut model = Model::clone(&loaded.model);
         switch_effects(args, &scene, &mut model).map_err(usage)?;
         let initial = initial_state(args, &model, pose).map_err(usage)?;

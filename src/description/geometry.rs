@@ -19,6 +19,26 @@ pub struct PlacedShape {
     pub substance: Option<Substance>,
 }
 
+impl PlacedShape {
+    /// B-4 (table 6-2): may it be taken as its polygon mesh? A hollow body never is (table 7-35).
+    pub fn may_be_polygonised(&self, dimension: Dimension) -> bool {
+        let sharp = self.finish.fillet == 0.0 && self.finish.top_fillet.is_none_or(|fillet| fillet == 0.0);
+        let whole = self.finish.slice.is_none();
+        let kind = match self.geometry {
+            Geometry::Box { .. } => sharp,
+            Geometry::Sphere { .. } | Geometry::Ellipsoid { .. } => true,
+            Geometry::Capsule { .. } => whole,
+            Geometry::Cylinder { .. }
+            | Geometry::EllipticCylinder { .. }
+            | Geometry::Tube { .. }
+            | Geometry::Cone { .. }
+            | Geometry::Frustum { .. } => sharp && whole,
+            _ => false,
+        };
+        kind && dimension == Dimension::Solid
+    }
+}
+
 /// Shapes; lengths in metres. Axes of round shapes are Z, as in URDF, and the origin is the middle.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the sentence at each variant tells its fields")]
@@ -184,8 +204,9 @@ pub struct Body {
 }
 
 impl Body {
-    /// What one of its shapes is made of.
+    /// What one of its shapes is made of; polygonised only if it may be (B-4).
     pub fn substance_of(&self, shape: &PlacedShape) -> Substance {
-        shape.substance.unwrap_or(self.substance)
+        let own = shape.substance.unwrap_or(self.substance);
+        Substance { polygonise: own.polygonise.filter(|_| shape.may_be_polygonised(own.dimension)), ..own }
     }
 }

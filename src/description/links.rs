@@ -111,7 +111,8 @@ fn read_geometry(element: &Element, report: &mut Report) -> Option<(Geometry, Fi
     };
     let read = shapes::read_shape(&shape, report)?;
     if !shapes::is_urdf(&shape) {
-        let message = format!("this <{}> is not a shape of URDF: other ROS tools may refuse the whole file", shape.tag());
+        let message =
+            format!("this <{}> is not a shape of URDF: other ROS tools may refuse the whole file", shape.tag());
         let mend = "show a URDF shape or a mesh here, and give this one in <realnoid>: in <proxy>, or in <shape> inside <body>";
         report.add_once(shape.tag(), Finding::warning("shape-beyond-urdf", shape.place(report), message, mend));
     }

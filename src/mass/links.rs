@@ -1,8 +1,8 @@
 //! Mass properties of every link of a description, and what there is to say about them.
 
+use super::MassProperties;
 use super::finding;
 use super::of_shape::{Method, Refusal, ShapeMass, of_shape};
-use super::MassProperties;
 use crate::description::{Body, Description, Finding, Inertial, JointKind, Link, PlacedShape};
 use crate::math::{Mat3, Vec3};
 use crate::shape::{Meshes, Shape};

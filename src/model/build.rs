@@ -1,5 +1,6 @@
 //! Description + mass properties → Model.
 
+use super::membership::memberships;
 use super::{Axis, AxisKind, AxisSlot, Body, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model};
 use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind};
 use crate::mass::MassProperties;
@@ -74,13 +75,14 @@ impl<'a> Builder<'a> {
     fn attach_root(&mut self, base_pose: Pose) {
         let (d, masses) = (self.d, self.masses);
         self.model.bodies.push(world());
-        self.model.links = (d.links.iter().zip(masses))
-            .map(|(l, m)| LinkInfo {
+        self.model.links = (d.links.iter().zip(masses).zip(memberships(d)))
+            .map(|((l, m), membership)| LinkInfo {
                 name: l.name.clone(),
                 parent: None,
                 fixed: false,
                 monitor: l.monitor,
                 mass: m.mass,
+                membership,
                 frame: LinkFrame::OnBody { body: 0, offset: Pose::identity() },
             })
             .collect();

@@ -6,10 +6,12 @@
 mod build;
 mod effects;
 mod group;
+mod membership;
 
 pub use build::Base;
 pub use effects::{EFFECT_NAMES, Effects};
 pub use group::{EulerFrame, EulerRates, POLE, rotation};
+pub use membership::Membership;
 
 use crate::description::{DriveMode, MonitorFrame};
 use crate::math::{M3, Pose, S3, V3};
@@ -84,6 +86,8 @@ pub struct LinkInfo {
     pub monitor: Option<MonitorFrame>,
     /// Mass, kg.
     pub mass: f64,
+    /// The joint whose link it belongs to; `None`: fixed to the root.
+    pub membership: Option<Membership>,
     /// Where the frame is.
     pub frame: LinkFrame,
 }

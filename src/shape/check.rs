@@ -98,9 +98,9 @@ fn rarer_sizes(geometry: &Geometry) -> Result<(), ShapeFault> {
         Geometry::SphericalTerrain { radius, height, .. } => {
             positive("a terrain", &[("radius", radius), ("height", height)])
         }
-        Geometry::Mesh { scale: [x, y, z], .. } => refuse_unless("a mesh", &[("x", x), ("y", y), ("z", z)], |v| {
-            v != 0.0 && v.is_finite()
-        }),
+        Geometry::Mesh { scale: [x, y, z], .. } => {
+            refuse_unless("a mesh", &[("x", x), ("y", y), ("z", z)], |v| v != 0.0 && v.is_finite())
+        }
         _ => Ok(()),
     }
 }

@@ -2,18 +2,22 @@
 
 mod bounds;
 mod check;
+mod collision;
 mod form;
 mod meshes;
 mod outline;
 mod solid;
+mod support;
 mod tessellate;
 mod trimesh;
 
 pub use bounds::{Bounds, bounds};
 pub use check::ShapeFault;
+pub use collision::{CollisionSource, collision_shapes};
 pub use form::Shape;
-pub use meshes::{HeightGrid, MeshFault, Meshes};
+pub use meshes::{HeightGrid, LONGEST_FILE, MeshFault, Meshes, SearchPaths};
 pub use outline::{Lathe, Piece, lathe};
 pub use solid::{SolidFault, closed_solid};
+pub use support::Support;
 pub use tessellate::{MOST_SEGMENTS, tessellate};
 pub use trimesh::TriMesh;

@@ -4,6 +4,7 @@
 
 use super::Shape;
 use crate::description::{Finish, Geometry};
+use crate::math::sin_cos;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// One smooth piece of an outline; points are (ρ, z) in metres, ρ ≥ 0.
@@ -23,7 +24,8 @@ impl Piece {
             Self::Line { from, to } => [from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t],
             Self::Arc { center, radius, from, to } => {
                 let angle = from + (to - from) * t;
-                [center[0] + radius * angle.cos(), center[1] + radius * angle.sin()]
+                let (sine, cosine) = sin_cos(angle);
+                [center[0] + radius * cosine, center[1] + radius * sine]
             }
         }
     }
@@ -34,7 +36,8 @@ impl Piece {
             Self::Line { from, to } => [to[0] - from[0], to[1] - from[1]],
             Self::Arc { radius, from, to, .. } => {
                 let angle = from + (to - from) * t;
-                [-radius * (to - from) * angle.sin(), radius * (to - from) * angle.cos()]
+                let (sine, cosine) = sin_cos(angle);
+                [-radius * (to - from) * sine, radius * (to - from) * cosine]
             }
         }
     }

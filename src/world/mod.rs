@@ -123,6 +123,13 @@ impl World {
         self.reset();
     }
 
+    /// Remembers where everything is now as the state that [`World::reset`] goes back to (B-13, B-14): poses
+    /// and angles; the velocities at start stay what they were.
+    pub fn remember(&mut self) {
+        self.initial.q.copy_from_slice(&self.engine.state.q);
+        self.initial.angles.copy_from_slice(&self.engine.state.angles);
+    }
+
     /// Advances one control interval; allocates nothing, cannot panic. A world that has diverged stands still.
     pub fn advance(&mut self) {
         let scaled = self.settings.control_interval_ns as f64 * self.settings.time_scale + self.rest_ns;

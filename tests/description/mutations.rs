@@ -7,7 +7,8 @@ use proptest::prelude::*;
 fn sample() -> String {
     let (_, group) = broken("group_origin");
     let link = r#"<visual><origin xyz="0 0 1"/><geometry><box size="1 2 3"/></geometry><material name="m"/></visual>
-        <realnoid><body specific_gravity="1.05" dimension="2d" thickness="0.01"><shape><sphere radius="1"/></shape></body>
+        <realnoid><body specific_gravity="1.05" dimension="2d" thickness="0.01" zero_exponent="-9"><shape scale="1 -2 1" polygonise="true" segments="8"><cylinder radius="1" length="2" slice="0 1" fillet="0.1"/></shape>
+        <shape><terrain size="1 1 1" columns="2" heights="0 1 0 1"/></shape><shape><quad a="0 0 0" b="1 0 0" c="1 1 0" d="0 1 0"/></shape></body>
         <proxy><capsule radius="0.07" length="0.3"/></proxy><surface friction="0.8"/><monitor frame="body"/></realnoid>"#;
     let joint = r#"<realnoid><drive mode="servo" max_torque="120"/><constraint erp="0.2"/></realnoid>"#;
     let group =

@@ -16,11 +16,14 @@ fn body_is_read() {
     let visual = r#"<visual><geometry><sphere radius="0.1"/></geometry></visual>"#;
     let text = |body: &str| robot(&format!("{visual}<realnoid>{body}</realnoid>"), "", "");
     let solid = sound(&text(r#"<body specific_gravity="1.05"/>"#)).links.remove(1).body.unwrap();
-    assert_eq!((solid.specific_gravity, solid.dimension, solid.l_scale), (1.05, Dimension::Solid, 1.0));
+    assert_eq!(
+        (solid.substance.specific_gravity, solid.substance.dimension, solid.l_scale),
+        (1.05, Dimension::Solid, 1.0)
+    );
     assert!(solid.shapes.is_empty());
     let hollow = r#"<body specific_gravity="2" dimension="2d" thickness="0.003" l_scale="1.5"/>"#;
     let hollow = sound(&text(hollow)).links.remove(1).body.unwrap();
-    assert_eq!((hollow.dimension, hollow.l_scale), (Dimension::Hollow { thickness: 0.003 }, 1.5));
+    assert_eq!((hollow.substance.dimension, hollow.l_scale), (Dimension::Hollow { thickness: 0.003 }, 1.5));
     assert_eq!(codes(&text(r#"<body specific_gravity="1"/>"#)), ["body-over-inertial"]);
     assert_eq!(codes(&text(r#"<body specific_gravity="1" thickness="0.1"/>"#))[0], "thickness");
     assert_eq!(codes(&text(r#"<body specific_gravity="0"/>"#))[0], "static-body-moves");
@@ -57,16 +60,40 @@ fn every_shape_is_read() {
             Geometry::Mesh { filename: "a.stl".into(), scale: [1.0, -1.0, 1.0] },
         ),
         (r#"<mesh filename="a.stl"/>"#, Geometry::Mesh { filename: "a.stl".into(), scale: [1.0; 3] }),
-        (r#"<hemisphere radius="1"/>"#, other("hemisphere", &[("radius", 1.0)])),
-        (r#"<torus ring_radius="2" pipe_radius="1"/>"#, other("torus", &[("ring_radius", 2.0), ("pipe_radius", 1.0)])),
+        (r#"<hemisphere radius="1"/>"#, Geometry::Hemisphere { radius: 1.0 }),
+        (r#"<torus ring_radius="2" pipe_radius="1"/>"#, Geometry::Torus { ring_radius: 2.0, pipe_radius: 1.0 }),
         (
             r#"<oil_tank radius="2" length="3" cap_height="1"/>"#,
-            other("oil_tank", &[("radius", 2.0), ("length", 3.0), ("cap_height", 1.0)]),
+            Geometry::OilTank { radius: 2.0, length: 3.0, cap_height: 1.0 },
         ),
-        (r#"<pyramid size="1 2 3"/>"#, other("pyramid", &[("size.0", 1.0), ("size.1", 2.0), ("size.2", 3.0)])),
-        (r#"<polyhedron faces="12" radius="1"/>"#, other("polyhedron", &[("faces", 12.0), ("radius", 1.0)])),
-        (r#"<disc outer_radius="1"/>"#, other("disc", &[("outer_radius", 1.0)])),
-        (r#"<plane size="1 2"/>"#, other("plane", &[("size.0", 1.0), ("size.1", 2.0)])),
+        (r#"<pyramid size="1 2 3"/>"#, Geometry::Pyramid { size: [1.0, 2.0, 3.0] }),
+        (r#"<polyhedron faces="12" radius="1"/>"#, Geometry::Polyhedron { faces: 12, radius: 1.0 }),
+        (r#"<disc outer_radius="1"/>"#, Geometry::Disc { outer_radius: 1.0, inner_radius: 0.0 }),
+        (r#"<disc outer_radius="1" inner_radius="0.5"/>"#, Geometry::Disc { outer_radius: 1.0, inner_radius: 0.5 }),
+        (r#"<plane size="1 2"/>"#, Geometry::Plane { size: [1.0, 2.0] }),
+        (
+            r#"<triangle a="0 0 0" b="1 0 0" c="0 1 0"/>"#,
+            Geometry::Triangle { corners: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] },
+        ),
+        (
+            r#"<quad a="0 0 0" b="1 0 0" c="1 1 0" d="0 1 0"/>"#,
+            Geometry::Quad { corners: [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]] },
+        ),
+        (
+            r#"<terrain size="4 2 1" columns="3" heights="0 0 0  0 1 0"/>"#,
+            Geometry::Terrain {
+                size: [4.0, 2.0, 1.0],
+                heights: Heights::Written { columns: 3, values: vec![0.0, 0.0, 0.0, 0.0, 1.0, 0.0] },
+            },
+        ),
+        (
+            r#"<terrain radius="1" height="0.1" filename="moon.png"/>"#,
+            Geometry::SphericalTerrain {
+                radius: 1.0,
+                height: 0.1,
+                heights: Heights::File { filename: "moon.png".into() },
+            },
+        ),
     ];
     for (text, expected) in cases {
         let proxy = thigh(&format!(r#"<proxy><origin xyz="0 0 1"/>{text}</proxy>"#)).proxies.remove(0);
@@ -78,8 +105,66 @@ fn every_shape_is_read() {
     }
 }
 
-fn other(kind: &str, values: &[(&str, f64)]) -> Geometry {
-    Geometry::Other { kind: kind.into(), values: values.iter().map(|(name, x)| (name.to_string(), *x)).collect() }
+#[test]
+fn finish_scale_and_substance_are_read() {
+    let shape =
+        |body: &str, shape: &str| thigh(&format!("<body specific_gravity='2' {body}>{shape}</body>")).body.unwrap();
+    let body = shape(
+        "",
+        r#"<shape><frustum radius="1" top_scale="0.5" length="2" fillet="0.1" top_fillet="0.2" slice="0 3"/></shape>"#,
+    );
+    assert_eq!(
+        body.shapes[0].finish,
+        Finish { fillet: 0.1, top_fillet: Some(0.2), slice: Some([0.0, 3.0]), open: false }
+    );
+    let body =
+        shape("", r#"<shape scale="1 2 -3" scale_top="0" scale_bottom="2"><capsule radius="1" length="1"/></shape>"#);
+    assert_eq!(body.shapes[0].scaling, Scaling { factors: [1.0, 2.0, -3.0], top: 0.0, bottom: 2.0 });
+    let walls = r#"<shape dimension="3d" specific_gravity="8"><sphere radius="1"/></shape>
+        <shape thickness="0.02"><cylinder radius="1" length="1" caps="false"/></shape><shape><sphere radius="1"/></shape>"#;
+    let body = shape(r#"dimension="2d" thickness="0.01""#, walls);
+    let told: Vec<_> =
+        body.shapes.iter().map(|s| body.substance_of(s)).map(|s| (s.specific_gravity, s.dimension)).collect();
+    let hollow = |thickness| Dimension::Hollow { thickness };
+    assert_eq!(told, [(8.0, Dimension::Solid), (2.0, hollow(0.02)), (2.0, hollow(0.01))]);
+    assert!(body.shapes[1].finish.open);
+    let polygons = r#"<shape><sphere radius="1"/></shape><shape polygonise="false"><sphere radius="1"/></shape>
+        <shape segments="8" limit_subdivisions="true"><box size="1 1 1"/></shape><shape><torus ring_radius="2" pipe_radius="1"/></shape>"#;
+    let body = shape(r#"polygonise="true" segments="24" flat_segments="4" zero_exponent="-9""#, polygons);
+    let told: Vec<_> = body.shapes.iter().map(|s| body.substance_of(s).polygonise).collect();
+    let into = |around, flat| Some(Subdivision { around, flat });
+    assert_eq!(told, [into(24, 4), None, into(8, 1), None]);
+    assert_eq!(body.zero_exponent, Some(-9));
+}
+
+#[test]
+fn what_a_shape_does_not_take_is_told() {
+    let told =
+        |shape: &str| codes(&robot(&format!("<realnoid><body specific_gravity='1'>{shape}</body></realnoid>"), "", ""));
+    let only = |shape: &str, code: &str| {
+        let codes = told(shape);
+        assert!(codes.iter().any(|c| *c == code), "{code} is missing in {codes:?}");
+    };
+    only("<shape scale='1 0 1'><sphere radius='1'/></shape>", "out-of-range");
+    only("<shape scale='1 nan 1'><sphere radius='1'/></shape>", "not-finite");
+    only("<shape scale='1 -1 1'><sphere radius='1'/></shape>", "mirrored");
+    only("<shape scale='2 2 2'><mesh filename='a.stl'/></shape>", "scale-ignored");
+    only("<shape scale_top='2'><sphere radius='1'/></shape>", "scale-ignored");
+    only("<shape scale_top='-1'><capsule radius='1' length='1'/></shape>", "out-of-range");
+    only("<shape polygonise='true'><box size='1 1 1' fillet='0.1'/></shape>", "polygonise-ignored");
+    only("<shape polygonise='true' dimension='2d' thickness='0.1'><sphere radius='1'/></shape>", "polygonise-ignored");
+    only("<shape segments='2'><sphere radius='1'/></shape>", "out-of-range");
+    only("<shape><cylinder radius='1' length='1' slice='1 0'/></shape>", "slice");
+    only("<shape><cylinder radius='1' length='1' slice='0 7'/></shape>", "slice");
+    only("<shape><terrain size='1 1 1' heights='0 0 0' columns='2'/></shape>", "terrain");
+    only("<shape><terrain size='1 1 1' radius='2' filename='a.png'/></shape>", "terrain");
+    only("<shape><terrain size='1 1 1'/></shape>", "terrain");
+    only("<shape><terrain size='1 1 1' heights='0 x 0 0' columns='2'/></shape>", "bad-number");
+    assert!(
+        told("<shape scale='2 2 2'><torus ring_radius='2' pipe_radius='1'/></shape>")
+            .iter()
+            .all(|c| *c == "body-over-inertial")
+    );
 }
 
 #[test]

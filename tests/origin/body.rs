@@ -4,7 +4,7 @@ use super::reader::{read, zero_pose};
 use realnoid::description::Description;
 use realnoid::mass::{MassProperties, link_masses};
 use realnoid::math::{Mat3, Vec3};
-use realnoid::shape::{Bounds, bounds};
+use realnoid::shape::{Bounds, Meshes, Shape, bounds};
 
 /// Mirrors Y.
 const MIRROR: Mat3 = Mat3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0);
@@ -25,9 +25,13 @@ fn mass_of(parts: &[&str]) -> f64 {
 fn visual_bounds(description: &Description, link: impl Fn(&str) -> bool) -> Bounds {
     let poses = zero_pose(description);
     let links = description.links.iter().filter(|l| link(&l.name));
-    let placed =
-        links.flat_map(|l| l.visuals.iter().map(|v| bounds(&v.geometry, &(poses[l.name.as_str()] * v.origin.pose()))));
-    placed.map(Option::unwrap).reduce(|a, b| a.union(&b)).unwrap()
+    let placed = links.flat_map(|l| {
+        l.visuals.iter().map(|v| {
+            let pose = poses[l.name.as_str()] * v.origin.pose();
+            bounds(&Shape::of(v).unwrap(), &pose, &Meshes::default()).unwrap()
+        })
+    });
+    placed.reduce(|a, b| a.union(&b)).unwrap()
 }
 
 #[test]
@@ -84,7 +88,12 @@ fn it_weighs_what_a_person_does_part_by_part() {
 fn specific_gravities_are_those_of_limbs_and_machines() {
     for link in read().links {
         if let Some(body) = link.body {
-            assert!((0.8..=1.6).contains(&body.specific_gravity), "{}: {}", link.name, body.specific_gravity);
+            assert!(
+                (0.8..=1.6).contains(&body.substance.specific_gravity),
+                "{}: {}",
+                link.name,
+                body.substance.specific_gravity
+            );
         }
     }
 }

@@ -93,7 +93,10 @@ pub fn finished() -> Vec<(&'static str, Shape)> {
         ("torus, stretched and mirrored", stretched(torus(), Finish::default())),
         ("box with fillet, stretched and mirrored", stretched(Geometry::Box { size: [0.4, 0.6, 0.9] }, fillet)),
         ("tube, sliced, stretched and mirrored", stretched(tube(), slice)),
-        ("polyhedron, stretched and mirrored", stretched(Geometry::Polyhedron { faces: 20, radius: 0.3 }, Finish::default())),
+        (
+            "polyhedron, stretched and mirrored",
+            stretched(Geometry::Polyhedron { faces: 20, radius: 0.3 }, Finish::default()),
+        ),
         ("capsule, stretched and mirrored", stretched(capsule(), Finish::default())),
     ]
 }

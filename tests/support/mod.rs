@@ -94,6 +94,7 @@ fn add_axes(m: &mut Model) {
         parent: None,
         fixed: true,
         monitor: None,
+        membership: None,
         mass: 0.0,
         frame: LinkFrame::OnBody { body: 0, offset: realnoid::math::Pose::identity() },
     });

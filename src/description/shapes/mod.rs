@@ -76,4 +76,3 @@ pub(super) fn is_urdf(element: &Element) -> bool {
     let known = SHAPES[..table::URDF_SHAPES].iter().any(|tag| tag.name == element.tag());
     known && table::FINISH.iter().all(|name| element.value(name).is_none())
 }
-

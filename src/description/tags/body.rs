@@ -4,7 +4,7 @@ use super::super::element::{Domain, Element};
 use super::super::finding::Finding;
 use super::super::report::Report;
 use super::super::rules::{Attribute, Kind, Tag, Values};
-use super::super::{Dimension, Finish, Geometry, PlacedShape, Scaling, Subdivision, Substance, shapes};
+use super::super::{Dimension, Geometry, PlacedShape, Scaling, Subdivision, Substance, shapes};
 
 /// B-3: 0.001 of the smallest system unit, the millimetre.
 const LEAST_THICKNESS: f64 = 1e-6;
@@ -48,12 +48,9 @@ pub(super) fn shape(element: &Element, body: &Substance, report: &mut Report) ->
     let values = SHAPE.read_attributes(element, report);
     let mut shape = shapes::read_placed(element, report)?;
     shape.scaling = scaling(&values, element, &shape.geometry, report);
-    let mut own = merged(&values, element, body, report);
-    if own.polygonise.is_some() && !may_polygonise(&shape.geometry, &shape.finish, own.dimension) {
-        own.polygonise = None;
-        if values.flag_or("polygonise", false) {
-            report.add(not_polygonised(element, &shape, report));
-        }
+    let own = merged(&values, element, body, report);
+    if values.flag_or("polygonise", false) && !shape.may_be_polygonised(own.dimension) {
+        report.add(not_polygonised(element, &shape, report));
     }
     shape.substance = Some(own);
     Some(shape)
@@ -161,27 +158,10 @@ fn scales(geometry: &Geometry) -> bool {
     )
 }
 
-/// B-4 (table 6-2); a hollow body is never polygonised (table 7-35).
-fn may_polygonise(geometry: &Geometry, finish: &Finish, dimension: Dimension) -> bool {
-    let sharp = finish.fillet == 0.0 && finish.top_fillet.is_none_or(|fillet| fillet == 0.0);
-    let whole = finish.slice.is_none();
-    let kind = match geometry {
-        Geometry::Box { .. } => sharp,
-        Geometry::Sphere { .. } | Geometry::Ellipsoid { .. } => true,
-        Geometry::Capsule { .. } => whole,
-        Geometry::Cylinder { .. }
-        | Geometry::EllipticCylinder { .. }
-        | Geometry::Tube { .. }
-        | Geometry::Cone { .. }
-        | Geometry::Frustum { .. } => sharp && whole,
-        _ => false,
-    };
-    kind && dimension == Dimension::Solid
-}
-
 fn not_polygonised(element: &Element, shape: &PlacedShape, report: &Report) -> Finding {
     let kind = shape.geometry.kind();
     let message = format!("this <{kind}> is not polygonised: it is taken as it is");
-    let mend = "polygonise takes solid boxes, spheres, capsules, cylinders, tubes, cones and frusta without slice and fillet";
+    let mend =
+        "polygonise takes solid boxes, spheres, capsules, cylinders, tubes, cones and frusta without slice and fillet";
     Finding::warning("polygonise-ignored", element.place_of("polygonise", report), message, mend)
 }

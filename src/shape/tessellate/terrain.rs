@@ -87,7 +87,11 @@ impl Grid {
         }
         if let Some(i) = heights.values.iter().position(|v| !v.is_finite()) {
             let value = heights.values[i];
-            return Err(MeshFault::Terrain(format!("height {} in row {} is {value}", i % columns + 1, i / columns + 1)));
+            return Err(MeshFault::Terrain(format!(
+                "height {} in row {} is {value}",
+                i % columns + 1,
+                i / columns + 1
+            )));
         }
         Ok(Self { heights, columns, rows })
     }

@@ -1,0 +1,96 @@
+//! What is simulated, for programs.
+
+use super::super::load::Loaded;
+use crate::mass::Method;
+use crate::math::Mat3;
+use crate::model::{AxisKind, AxisSlot, EFFECT_NAMES};
+use crate::monitor::{LinkValues, joint_link_values, link_values};
+use crate::shape::collision_shapes;
+use serde_json::{Value, json};
+
+/// SI units; names and units as `docs/` tells them.
+pub(super) fn json(l: &Loaded) -> Value {
+    let m = &l.model;
+    let links: Vec<Value> = l
+        .description
+        .links
+        .iter()
+        .zip(&m.links)
+        .zip(&l.bodies)
+        .zip(link_values(m, &l.bodies))
+        .map(|(((read, link), body), values)| {
+            let mut json = weight(&values);
+            let (source, shapes) = collision_shapes(read);
+            json["name"] = json!(link.name);
+            json["shapes"] = body.methods.iter().map(|m| method(*m)).collect();
+            json["member_of"] = link
+                .membership
+                .as_ref()
+                .map_or(Value::Null, |m| json!({"joint": m.joint, "axis": m.axis, "root": m.root}));
+            json["collision"] = json!({"from": format!("{source:?}").to_lowercase(), "shapes": shapes.len()});
+            json
+        })
+        .collect();
+    let joint_links: Vec<Value> = joint_link_values(m, &l.bodies)
+        .iter()
+        .map(|values| {
+            let mut json = weight(values);
+            json["joint"] = json!(values.membership.as_ref().map(|m| &m.joint));
+            json["axis"] = json!(values.membership.as_ref().map(|m| &m.axis));
+            json["frame"] = json!(values.frame);
+            json["links"] = json!(values.members);
+            json
+        })
+        .collect();
+    let bound = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
+    let axes: Vec<Value> = m
+        .axes
+        .iter()
+        .map(|a| {
+            json!({
+                "name": a.name,
+                "kind": if a.kind == AxisKind::Linear { "linear" } else { "rotary" },
+                "group": if matches!(a.slot, AxisSlot::Euler { .. }) { json!("3dof") } else { Value::Null },
+                "lower": bound(a.lower),
+                "upper": bound(a.upper),
+                "max_torque": bound(a.max_torque),
+                "max_speed": bound(a.max_speed),
+                "damping": a.damping,
+                "friction": a.friction,
+                "mode": format!("{:?}", a.mode).to_lowercase(),
+            })
+        })
+        .collect();
+    let effects: serde_json::Map<String, Value> =
+        EFFECT_NAMES.iter().zip(m.effects.as_array()).map(|(n, on)| ((*n).to_owned(), json!(on))).collect();
+    json!({"name": m.name, "mass": m.mass(), "bodies": m.bodies.len() - 1, "velocities": m.nv, "links": links,
+           "joint_links": joint_links, "axes": axes, "effects": effects})
+}
+
+/// Mass properties of one link (B-10, J-19).
+fn weight(v: &LinkValues) -> Value {
+    let p = &v.properties;
+    let principal = p.principal();
+    json!({
+        "volume": v.volume,
+        "mass": p.mass,
+        "center_of_mass": p.center.as_slice(),
+        "inertia": tensor(&p.inertia),
+        "inertia_at_origin": tensor(&v.inertia_at_origin()),
+        "principal_moments": v.principal_moments().as_slice(),
+        "principal_axes": (0..3).map(|i| principal.axes.column(i).as_slice().to_vec()).collect::<Vec<_>>(),
+        "l_scale": v.l_scale,
+    })
+}
+
+fn method(method: Method) -> Value {
+    match method {
+        Method::Formula => json!({"mass_by": "formula"}),
+        Method::Quadrature => json!({"mass_by": "quadrature"}),
+        Method::Polygons(triangles) => json!({"mass_by": "polygons", "triangles": triangles}),
+    }
+}
+
+fn tensor(i: &Mat3) -> Value {
+    json!({"ixx": i[(0, 0)], "ixy": i[(0, 1)], "ixz": i[(0, 2)], "iyy": i[(1, 1)], "iyz": i[(1, 2)], "izz": i[(2, 2)]})
+}

@@ -1,0 +1,33 @@
+//! `realnoid inspect`: what is simulated, in numbers and as a picture.
+
+mod json;
+mod tables;
+mod values;
+
+use super::args::InspectArgs;
+use super::base_by_name;
+use super::load::load;
+use std::process::ExitCode;
+pub use values::Unit;
+
+/// Prints tables, values in full, JSON, or the URDF with inertials.
+pub fn run(args: &InspectArgs) -> ExitCode {
+    let loaded = match load(args.packages.source(args.urdf.as_deref()), base_by_name(&args.base)) {
+        Ok(loaded) => loaded,
+        Err(report) => {
+            eprint!("{report}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let unit = Unit::named(&args.unit);
+    let text = if args.urdf_with_inertials {
+        loaded.published
+    } else if args.json {
+        format!("{:#}\n", json::json(&loaded))
+    } else if args.full {
+        values::full(&loaded, unit)
+    } else {
+        tables::tables(&loaded, unit)
+    };
+    super::say(&text)
+}

@@ -1,0 +1,87 @@
+//! What links weigh, as it is shown (B-10, J-19).
+
+use crate::mass::{LinkBody, MassProperties};
+use crate::math::{Mat3, Pose, Vec3};
+use crate::model::{LinkFrame, Membership, Model};
+
+/// The values of one link.
+#[derive(Clone, Debug)]
+pub struct LinkValues {
+    /// Name of the URDF link in whose frame the values are.
+    pub frame: String,
+    /// What moves it; `None`: the base.
+    pub membership: Option<Membership>,
+    /// URDF links that make it up, those without mass left out.
+    pub members: Vec<String>,
+    /// Of the material, m³; `None` if some mass is only stated.
+    pub volume: Option<f64>,
+    /// In the frame of `frame`.
+    pub properties: MassProperties,
+    /// B-18 factor; `None` if the members have different ones.
+    pub l_scale: Option<f64>,
+    /// B-10: the power of ten below which tensor elements are shown as 0.
+    pub zero_exponent: Option<i32>,
+}
+
+impl LinkValues {
+    /// B-10 D: inertia about the frame's origin along its axes, kg·m².
+    pub fn inertia_at_origin(&self) -> Mat3 {
+        self.properties.inertia_at_origin().map(|x| self.shown(x))
+    }
+
+    /// B-10 E: principal moments about the centre of mass, ascending, kg·m².
+    pub fn principal_moments(&self) -> Vec3 {
+        self.properties.principal().moments.map(|x| self.shown(x))
+    }
+
+    fn shown(&self, x: f64) -> f64 {
+        let least = self.zero_exponent.map_or(0.0, |e| 10.0_f64.powi(e));
+        if x.abs() < least { 0.0 } else { x }
+    }
+}
+
+/// The values of each URDF link, in the order of the model.
+pub fn link_values(model: &Model, bodies: &[LinkBody]) -> Vec<LinkValues> {
+    let links = model.links.iter().zip(bodies);
+    let values = links.map(|(link, body)| LinkValues {
+        frame: link.name.clone(),
+        membership: link.membership.clone(),
+        members: vec![link.name.clone()],
+        volume: body.volume,
+        properties: body.properties,
+        l_scale: Some(body.l_scale),
+        zero_exponent: body.zero_exponent,
+    });
+    values.collect()
+}
+
+/// The links of the source (節): what each joint moves as one body, from its axis to the next ones (J-6). The base
+/// comes first; what has no mass is left out.
+pub fn joint_link_values(model: &Model, bodies: &[LinkBody]) -> Vec<LinkValues> {
+    (0..model.bodies.len()).filter_map(|body| joint_link(model, bodies, body)).collect()
+}
+
+fn joint_link(model: &Model, bodies: &[LinkBody], body: usize) -> Option<LinkValues> {
+    let members: Vec<(usize, Pose)> = (model.links.iter().enumerate())
+        .filter_map(|(i, link)| match link.frame {
+            LinkFrame::OnBody { body: b, offset } if b == body => Some((i, offset)),
+            _ => None,
+        })
+        .collect();
+    let is_root = |i: usize| i == model.root_link || model.links[i].membership.as_ref().is_some_and(|m| m.root);
+    let &(root, root_pose) = members.iter().find(|(i, _)| is_root(*i)).or(members.first())?;
+    let heavy: Vec<&(usize, Pose)> = members.iter().filter(|(i, _)| bodies[*i].properties.mass > 0.0).collect();
+    let parts: Vec<MassProperties> =
+        heavy.iter().map(|(i, pose)| bodies[*i].properties.placed(&root_pose.inv_mul(pose))).collect();
+    let scales: Vec<f64> = heavy.iter().map(|(i, _)| bodies[*i].l_scale).collect();
+    let first = *scales.first()?;
+    Some(LinkValues {
+        frame: model.links[root].name.clone(),
+        membership: model.links[root].membership.clone(),
+        members: heavy.iter().map(|(i, _)| model.links[*i].name.clone()).collect(),
+        volume: heavy.iter().map(|(i, _)| bodies[*i].volume).sum(),
+        properties: MassProperties::sum(&parts),
+        l_scale: scales.iter().all(|s| *s == first).then_some(first),
+        zero_exponent: heavy.iter().filter_map(|(i, _)| bodies[*i].zero_exponent).min(),
+    })
+}

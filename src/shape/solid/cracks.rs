@@ -1,0 +1,63 @@
+//! Cracks: borders that lie so close to each other that the same border is meant.
+
+use super::{Edges, diagonal};
+use crate::math::Vec3;
+use crate::shape::TriMesh;
+use std::collections::HashMap;
+
+/// Vertices on a border nearer than this part of the diagonal become one: the seventh digit, in which files with f32
+/// coordinates round.
+const CRACK: f64 = 1e-6;
+
+/// Welds vertices at odd edges to each other; the sentence that tells it, or None if there is nothing to weld.
+pub(super) fn weld(mesh: &mut TriMesh, edges: &Edges) -> Option<String> {
+    let width = CRACK * diagonal(mesh);
+    let mut border: Vec<u32> = edges.all_odd().flat_map(|side| side.ends()).collect();
+    border.sort_unstable();
+    border.dedup();
+    let mut kept = Grid { width, cells: HashMap::new() };
+    let mut moved = HashMap::new();
+    let mut widest = 0.0_f64;
+    for vertex in border {
+        let place = mesh.vertices[vertex as usize];
+        match kept.nearest(mesh, place) {
+            Some((other, distance)) => {
+                moved.insert(vertex, other);
+                widest = widest.max(distance);
+            }
+            None => kept.cells.entry(kept.cell(place)).or_default().push(vertex),
+        }
+    }
+    if moved.is_empty() {
+        return None;
+    }
+    for corner in mesh.triangles.iter_mut().flatten() {
+        *corner = moved.get(corner).copied().unwrap_or(*corner);
+    }
+    let n = moved.len();
+    Some(format!("{n} vertices along cracks at most {widest:.1e} m wide were welded to their neighbours"))
+}
+
+/// Vertices by cubes as wide as a crack; no two vertices in it are nearer than that, so a cube holds only a few.
+struct Grid {
+    width: f64,
+    cells: HashMap<[i64; 3], Vec<u32>>,
+}
+
+impl Grid {
+    fn cell(&self, place: Vec3) -> [i64; 3] {
+        [0, 1, 2].map(|i| (place[i] / self.width).floor() as i64)
+    }
+
+    fn nearest(&self, mesh: &TriMesh, place: Vec3) -> Option<(u32, f64)> {
+        let [x, y, z] = self.cell(place);
+        let around = (0..27)
+            .map(|i| [x.saturating_add(i % 3 - 1), y.saturating_add(i / 3 % 3 - 1), z.saturating_add(i / 9 - 1)]);
+        around
+            .filter_map(|cell| self.cells.get(&cell))
+            .flatten()
+            .map(|v| (*v, (mesh.vertices[*v as usize] - place).norm()))
+            .filter(|(_, distance)| *distance <= self.width)
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
