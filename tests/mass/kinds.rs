@@ -18,8 +18,19 @@ pub fn ordinary() -> impl Strategy<Value = Draw> {
     let length = || 0.1..1.0f64;
     let part = || 0.1..0.9f64;
     let factor = || prop_oneof![0.3..3.0f64, -3.0..-0.3];
-    ([length(), length(), length()], [part(), part(), part()], -3.0..3.0f64, 0.1..6.2f64, [factor(), factor(), factor()])
-        .prop_map(|(lengths, parts, from, sweep, factors)| Draw { lengths, parts, slice: [from, from + sweep], factors })
+    (
+        [length(), length(), length()],
+        [part(), part(), part()],
+        -3.0..3.0f64,
+        0.1..6.2f64,
+        [factor(), factor(), factor()],
+    )
+        .prop_map(|(lengths, parts, from, sweep, factors)| Draw {
+            lengths,
+            parts,
+            slice: [from, from + sweep],
+            factors,
+        })
 }
 
 /// One length, part or factor after the other at 1 : 1000.

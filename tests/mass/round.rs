@@ -11,14 +11,14 @@ type Curve = Box<dyn Fn(f64) -> [f64; 2]>;
 pub struct Round {
     /// Heights between which the radii are smooth.
     breaks: Vec<f64>,
-    pub outer: Radius,
-    pub inner: Radius,
+    outer: Radius,
+    inner: Radius,
     /// (ρ, z) over 0 … 1, each smooth, at most a quarter of a circle.
     curves: Vec<Curve>,
-    pub turn: [f64; 2],
+    turn: [f64; 2],
     cut: bool,
     /// Factors along the axes.
-    pub stretch: [f64; 3],
+    stretch: [f64; 3],
 }
 
 fn arc([rho, z]: [f64; 2], radius: f64, from: f64, to: f64) -> Curve {
@@ -59,10 +59,9 @@ impl Round {
             }
             Geometry::Torus { ring_radius, pipe_radius } => torus(ring_radius, pipe_radius),
             Geometry::OilTank { radius, length, cap_height } => oil_tank(radius, length / 2.0, cap_height),
-            Geometry::Disc { outer_radius, inner_radius } => Self {
-                curves: vec![line([inner_radius, 0.0], [outer_radius, 0.0])],
-                ..bowl(1.0)
-            },
+            Geometry::Disc { outer_radius, inner_radius } => {
+                Self { curves: vec![line([inner_radius, 0.0], [outer_radius, 0.0])], ..bowl(1.0) }
+            }
             _ => return None,
         };
         (0..3).for_each(|i| round.stretch[i] *= stretch[i]);
@@ -123,13 +122,12 @@ impl Round {
         const D: f64 = 2e-4;
         // Fourth order, at unit scale before the stretch.
         let slope = |at: &dyn Fn(f64) -> [f64; 2], t: f64| {
-            [0, 1].map(|i| (8.0 * (at(t + D)[i] - at(t - D)[i]) - (at(t + 2.0 * D)[i] - at(t - 2.0 * D)[i])) / (12.0 * D))
+            [0, 1]
+                .map(|i| (8.0 * (at(t + D)[i] - at(t - D)[i]) - (at(t + 2.0 * D)[i] - at(t - 2.0 * D)[i])) / (12.0 * D))
         };
         let around = |phi: f64| [phi.cos(), phi.sin()];
-        let turns: Vec<_> = graded(range[0], range[1])
-            .into_iter()
-            .map(|(w, phi)| (w, around(phi), slope(&around, phi)))
-            .collect();
+        let turns: Vec<_> =
+            graded(range[0], range[1]).into_iter().map(|(w, phi)| (w, around(phi), slope(&around, phi))).collect();
         let stretch = Vec3::from(self.stretch);
         for (wt, t) in graded(0.0, 1.0) {
             let ([rho, z], [rho_slope, z_slope]) = (curve(t), slope(curve, t));
@@ -144,6 +142,25 @@ impl Round {
 
     fn place(&self, [rho, z]: [f64; 2], phi: f64) -> Vec3 {
         Vec3::new(rho * phi.cos(), rho * phi.sin(), z).component_mul(&Vec3::from(self.stretch))
+    }
+
+    /// A box around the whole turn.
+    pub fn box_around(&self) -> (Vec3, Vec3) {
+        let (Some(low), Some(high)) = (self.breaks.first(), self.breaks.last()) else { return Default::default() };
+        let widest = self.curves.iter().map(|c| c(0.0)[0].max(c(1.0)[0])).fold(0.0, f64::max);
+        let corners = [Vec3::new(-widest, -widest, *low), Vec3::new(widest, widest, *high)];
+        let [a, b] = corners.map(|c| c.component_mul(&Vec3::from(self.stretch)));
+        (a.inf(&b), a.sup(&b))
+    }
+
+    /// Is a point inside?
+    pub fn contains(&self, p: Vec3) -> bool {
+        let q = p.component_div(&Vec3::from(self.stretch));
+        let rho = q.x.hypot(q.y);
+        let [from, to] = self.turn;
+        let past = (q.y.atan2(q.x) - from).rem_euclid(TAU);
+        let within = self.breaks.first().is_some_and(|z| *z < q.z) && self.breaks.last().is_some_and(|z| q.z < *z);
+        within && past <= to - from && (self.inner)(q.z) < rho && rho < (self.outer)(q.z)
     }
 
     /// The turn in parts within quarters.

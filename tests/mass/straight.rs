@@ -69,7 +69,9 @@ fn triangle([a, b, c]: [Vec3; 3]) -> Cloud {
     let twice = (b - a).cross(&(c - a)).norm();
     let mut cloud = Vec::new();
     for (wu, u) in gauss(0.0, 1.0) {
-        cloud.extend(gauss(0.0, 1.0).into_iter().map(|(wv, v)| (twice * wu * wv * u, a + (b - a) * u + (c - b) * (u * v))));
+        cloud.extend(
+            gauss(0.0, 1.0).into_iter().map(|(wv, v)| (twice * wu * wv * u, a + (b - a) * u + (c - b) * (u * v))),
+        );
     }
     cloud
 }
