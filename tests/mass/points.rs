@@ -3,6 +3,7 @@
 use realnoid::mass::MassProperties;
 use realnoid::math::{Mat3, Vec3};
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// Weighted points: the integral of f is Σ w·f(point).
 pub type Cloud = Vec<(f64, Vec3)>;
@@ -49,23 +50,25 @@ impl Moments {
 
 /// Points of order 8 on [from, to].
 pub fn gauss(from: f64, to: f64) -> Vec<(f64, f64)> {
-    // Roots of P₈ by Newton's method from the usual cosine guess.
-    let rule = (0..8).map(|k| {
-        let mut x = (PI * (f64::from(k) + 0.75) / 8.5).cos();
-        let mut slope = 0.0;
-        for _ in 0..50 {
-            let (mut p0, mut p1) = (1.0, x);
-            for n in 2..=8 {
-                let n = f64::from(n);
-                (p0, p1) = (p1, ((2.0 * n - 1.0) * x * p1 - (n - 1.0) * p0) / n);
-            }
-            slope = 8.0 * (x * p1 - p0) / (x * x - 1.0);
-            x -= p1 / slope;
-        }
-        (x, 2.0 / ((1.0 - x * x) * slope * slope))
-    });
+    static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| (0..8).map(legendre_root).collect());
     let half = (to - from) / 2.0;
-    rule.map(|(x, w)| (w * half, from + half * (1.0 + x))).collect()
+    RULE.iter().map(|(x, w)| (w * half, from + half * (1.0 + x))).collect()
+}
+
+/// Root of P₈ and its weight, by Newton's method from the usual cosine guess.
+fn legendre_root(k: u32) -> (f64, f64) {
+    let mut x = (PI * (f64::from(k) + 0.75) / 8.5).cos();
+    let mut slope = 0.0;
+    for _ in 0..50 {
+        let (mut p0, mut p1) = (1.0, x);
+        for n in 2..=8 {
+            let n = f64::from(n);
+            (p0, p1) = (p1, ((2.0 * n - 1.0) * x * p1 - (n - 1.0) * p0) / n);
+        }
+        slope = 8.0 * (x * p1 - p0) / (x * x - 1.0);
+        x -= p1 / slope;
+    }
+    (x, 2.0 / ((1.0 - x * x) * slope * slope))
 }
 
 /// Gauss points on panels that shrink towards both ends, where an integrand may bend sharply.
@@ -82,7 +85,9 @@ pub fn graded(from: f64, to: f64) -> Vec<(f64, f64)> {
 /// Points on [from, to] for an integrand that starts and ends like a square root.
 pub fn rooted(from: f64, to: f64) -> Vec<(f64, f64)> {
     let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
-    graded(-PI / 2.0, PI / 2.0).into_iter().map(|(w, t)| (w * half * t.cos(), middle + half * t.sin())).collect()
+    let cuts = [-1.0, -0.95, -0.8, -0.4, 0.0, 0.4, 0.8, 0.95, 1.0].map(|c| c * PI / 2.0);
+    let angles = cuts.windows(2).flat_map(|w| gauss(w[0], w[1]));
+    angles.map(|(w, t)| (w * half * t.cos(), middle + half * t.sin())).collect()
 }
 
 /// Images of all points; weights times `grows`.

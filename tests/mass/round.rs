@@ -6,14 +6,18 @@ use realnoid::math::Vec3;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 type Radius = Box<dyn Fn(f64) -> f64>;
-type Curve = Box<dyn Fn(f64) -> [f64; 2]>;
+
+/// (ρ, z) over 0 … 1, smooth, at most a quarter of a circle.
+struct Curve {
+    at: Box<dyn Fn(f64) -> [f64; 2]>,
+    straight: bool,
+}
 
 pub struct Round {
     /// Heights between which the radii are smooth.
     breaks: Vec<f64>,
     outer: Radius,
     inner: Radius,
-    /// (ρ, z) over 0 … 1, each smooth, at most a quarter of a circle.
     curves: Vec<Curve>,
     turn: [f64; 2],
     cut: bool,
@@ -22,14 +26,16 @@ pub struct Round {
 }
 
 fn arc([rho, z]: [f64; 2], radius: f64, from: f64, to: f64) -> Curve {
-    Box::new(move |t| {
+    let at = move |t: f64| {
         let angle = from + (to - from) * t;
         [rho + radius * angle.cos(), z + radius * angle.sin()]
-    })
+    };
+    Curve { at: Box::new(at), straight: false }
 }
 
 fn line(from: [f64; 2], to: [f64; 2]) -> Curve {
-    Box::new(move |t| [from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t])
+    let at = move |t: f64| [from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t];
+    Curve { at: Box::new(at), straight: true }
 }
 
 fn root(square: f64) -> f64 {
@@ -129,8 +135,9 @@ impl Round {
         let turns: Vec<_> =
             graded(range[0], range[1]).into_iter().map(|(w, phi)| (w, around(phi), slope(&around, phi))).collect();
         let stretch = Vec3::from(self.stretch);
-        for (wt, t) in graded(0.0, 1.0) {
-            let ([rho, z], [rho_slope, z_slope]) = (curve(t), slope(curve, t));
+        // Along a straight line the integrand is a polynomial.
+        for (wt, t) in if curve.straight { gauss(0.0, 1.0) } else { graded(0.0, 1.0) } {
+            let ([rho, z], [rho_slope, z_slope]) = ((curve.at)(t), slope(&curve.at, t));
             for &(wp, [cos, sin], [dcos, dsin]) in &turns {
                 let along = Vec3::new(rho_slope * cos, rho_slope * sin, z_slope).component_mul(&stretch);
                 let across = Vec3::new(rho * dcos, rho * dsin, 0.0).component_mul(&stretch);
@@ -147,7 +154,7 @@ impl Round {
     /// A box around the whole turn.
     pub fn box_around(&self) -> (Vec3, Vec3) {
         let (Some(low), Some(high)) = (self.breaks.first(), self.breaks.last()) else { return Default::default() };
-        let widest = self.curves.iter().map(|c| c(0.0)[0].max(c(1.0)[0])).fold(0.0, f64::max);
+        let widest = self.curves.iter().map(|c| (c.at)(0.0)[0].max((c.at)(1.0)[0])).fold(0.0, f64::max);
         let corners = [Vec3::new(-widest, -widest, *low), Vec3::new(widest, widest, *high)];
         let [a, b] = corners.map(|c| c.component_mul(&Vec3::from(self.stretch)));
         (a.inf(&b), a.sup(&b))

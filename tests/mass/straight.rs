@@ -1,6 +1,6 @@
 //! Boxes, pyramids and triangles from their definition.
 
-use super::points::{Cloud, gauss, graded, rooted, stretched};
+use super::points::{Cloud, gauss, graded, stretched};
 use realnoid::description::Geometry;
 use realnoid::math::Vec3;
 use realnoid::shape::TriMesh;
@@ -102,10 +102,10 @@ fn rounded_box(p: [f64; 3], f: f64) -> Cloud {
 fn across(p: f64, f: f64) -> Vec<(f64, f64, f64)> {
     let core = gauss(-p, p).into_iter().map(|(w, at)| (w, at, f));
     let beyond = |sign: f64| {
-        let rule = if f > 0.0 { rooted(0.0, f) } else { vec![] };
-        rule.into_iter().map(move |(w, d)| (w, sign * (p + d), ((f - d) * (f + d)).sqrt()))
+        // d = f sin t, so that the square root at the end becomes a cosine.
+        let rule = if f > 0.0 { [gauss(0.0, 0.8), gauss(0.8, FRAC_PI_2)].concat() } else { vec![] };
+        rule.into_iter().map(move |(w, t)| (w * f * t.cos(), sign * (p + f * t.sin()), f * t.cos()))
     };
-    // Square roots need many points only in the rounding.
     core.chain(beyond(-1.0)).chain(beyond(1.0)).collect()
 }
 
