@@ -3,6 +3,7 @@
 pub mod args;
 pub mod bench;
 pub mod check;
+pub mod drawing;
 pub mod evaluate;
 pub mod inspect;
 pub mod load;
