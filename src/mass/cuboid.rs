@@ -7,6 +7,7 @@
 use super::ellipsoid::octant;
 use super::moments::Moments;
 use super::rules::crowded;
+use crate::math::sin_cos;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Filled, with full edge lengths `size`, m.
@@ -107,8 +108,8 @@ fn quarter_ellipse(a: f64, b: f64) -> (f64, Lies, Lies) {
     }
     let (mut length, mut mean, mut square) = (0.0, [0.0; 2], [0.0; 2]);
     for &(weight, t) in crowded() {
-        let (sin, cos) = (t * FRAC_PI_2).sin_cos();
-        let weight = weight * (a * sin).hypot(b * cos);
+        let (sin, cos) = sin_cos(t * FRAC_PI_2);
+        let weight = weight * ((a * sin).powi(2) + (b * cos).powi(2)).sqrt();
         length += weight;
         for (i, at) in [a * cos, b * sin].into_iter().enumerate() {
             mean[i] += weight * at;

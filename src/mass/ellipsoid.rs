@@ -2,6 +2,7 @@
 
 use super::moments::Moments;
 use super::rules::crowded;
+use crate::math::sin_cos;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Filled ellipsoid with these semi-axes, m.
@@ -52,7 +53,7 @@ pub(super) fn octant([a, b, c]: [f64; 3]) -> Octant {
     for &(weight_u, u) in crowded() {
         let across = (1.0 - u) * (1.0 + u);
         for &(weight_phi, part) in crowded() {
-            let (sin, cos) = (part * FRAC_PI_2).sin_cos();
+            let (sin, cos) = sin_cos(part * FRAC_PI_2);
             let element = (across * ((bc * cos).powi(2) + (ca * sin).powi(2)) + (ab * u).powi(2)).sqrt();
             let weight = weight_u * weight_phi * element;
             area += weight;

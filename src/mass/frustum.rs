@@ -7,6 +7,7 @@
 //! separate too.
 
 use super::moments::Moments;
+use crate::math::sin_cos;
 use std::f64::consts::{PI, TAU};
 
 /// Filled; semi-axes `a`, `b` of the base at −length/2, the top section scaled by `top_scale` ≥ 0.
@@ -83,7 +84,7 @@ fn circumference(a: f64, b: f64, slope: f64) -> Circumference {
 fn circumference_by(points: u32, a: f64, b: f64, slope: f64) -> Circumference {
     let (mut whole, mut cos2) = (0.0, 0.0);
     for k in 0..points {
-        let (sin, cos) = (TAU * f64::from(k) / f64::from(points)).sin_cos();
+        let (sin, cos) = sin_cos(TAU * f64::from(k) / f64::from(points));
         let g = ((b * cos).powi(2) + (a * sin).powi(2) + slope * slope).sqrt();
         whole += g;
         cos2 += g * cos * cos;

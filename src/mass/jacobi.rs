@@ -34,8 +34,8 @@ fn rotate(a: &mut Mat3, axes: &mut Mat3, p: usize, q: usize) -> bool {
     }
     // Tangent of the smaller of the two angles that do it.
     let theta = (a[(q, q)] - a[(p, p)]) / (2.0 * off);
-    let tan = theta.signum() / (theta.abs() + theta.hypot(1.0));
-    let cos = 1.0 / tan.hypot(1.0);
+    let tan = theta.signum() / (theta.abs() + libm::hypot(theta, 1.0));
+    let cos = 1.0 / libm::hypot(tan, 1.0);
     let sin = tan * cos;
     let third = 3 - p - q;
     let (rp, rq) = (a[(third, p)], a[(third, q)]);

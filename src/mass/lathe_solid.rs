@@ -2,7 +2,7 @@
 
 use super::moments::Moments;
 use super::section::Section;
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, sin_cos};
 use crate::shape::Lathe;
 
 /// Filled and stretched.
@@ -41,12 +41,12 @@ impl Fan {
         let Some(x) = sweep else {
             return Self { cos: 0.0, cos2: 0.5, sin2: 0.5, cos_spread: 0.5 };
         };
-        let cos = (x / 2.0).sin() / (x / 2.0);
+        let cos = sin_cos(x / 2.0).0 / (x / 2.0);
         if x < 1.0 {
             let (sin2, cos_spread) = narrow(x);
             return Self { cos, cos2: 1.0 - sin2, sin2, cos_spread };
         }
-        let wave = x.sin() / (2.0 * x);
+        let wave = sin_cos(x).0 / (2.0 * x);
         Self { cos, cos2: 0.5 + wave, sin2: 0.5 - wave, cos_spread: 0.5 + wave - cos * cos }
     }
 }
@@ -72,7 +72,8 @@ pub(super) fn cut_faces(lathe: &Lathe) -> Vec<Moments> {
     let section = Section::of(lathe);
     let face = |angle: f64| {
         let [x, y, z] = lathe.stretch;
-        let out = Vec3::new(x * angle.cos(), y * angle.sin(), 0.0);
+        let (sin, cos) = sin_cos(angle);
+        let out = Vec3::new(x * cos, y * sin, 0.0);
         let up = Vec3::new(0.0, 0.0, z);
         let [rr, rz, zz] = section.spread;
         Moments {

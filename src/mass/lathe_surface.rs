@@ -9,7 +9,7 @@ use super::lathe_solid::cut_faces;
 use super::moments::Moments;
 use super::rules::{Node, crowded, gauss, quarters};
 use super::section::cut;
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, sin_cos};
 use crate::shape::{Lathe, Piece};
 use std::f64::consts::FRAC_PI_2;
 
@@ -67,7 +67,7 @@ fn around(slice: Option<[f64; 2]>, rule: &[Node]) -> Vec<Around> {
     let parts = slice.map_or(vec![[0.0, FRAC_PI_2]], |[from, to]| quarters(from, to));
     let part = |[from, to]: [f64; 2]| {
         rule.iter().map(move |&(weight, t)| {
-            let (sin, cos) = (from + (to - from) * t).sin_cos();
+            let (sin, cos) = sin_cos(from + (to - from) * t);
             Around { weight: weight * (to - from), cos, sin }
         })
     };

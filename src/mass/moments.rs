@@ -1,7 +1,7 @@
 //! Uniform bodies and surfaces: measure, centre, covariance.
 
 use super::MassProperties;
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, sin_cos};
 
 /// Volume (or area) and its first two moments.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,8 @@ impl Moments {
 
     /// Turned by `angle` rad about Z.
     pub fn turned(self, angle: f64) -> Self {
-        let r = nalgebra::Rotation3::from_axis_angle(&Vec3::z_axis(), angle).into_inner();
+        let (sin, cos) = sin_cos(angle);
+        let r = Mat3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
         Self { measure: self.measure, center: r * self.center, covariance: r * self.covariance * r.transpose() }
     }
 

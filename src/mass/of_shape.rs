@@ -113,10 +113,10 @@ fn by_polygons(
     meshes: &Meshes,
 ) -> Result<Found, Refusal> {
     let kind = shape.geometry.kind();
-    // Shapes that are polygons anyway do not look at the subdivision.
+    // Shapes that are polygons anyway do not look at the subdivision; all but meshes from files are closed as made.
     let mesh = tessellate(shape, subdivision.unwrap_or(Subdivision { around: 3, flat: 1 }), meshes)?;
     let (mesh, repairs) = match shape.geometry {
-        Geometry::Mesh { .. } | Geometry::SphericalTerrain { .. } if solid => closed_solid(mesh)?,
+        Geometry::Mesh { .. } if solid => closed_solid(mesh)?,
         _ => (mesh, vec![]),
     };
     let method = Method::Polygons(mesh.triangles.len());

@@ -1,5 +1,6 @@
 //! Quadrature rules on the interval from 0 to 1, and where to cut a range of angles.
 
+use crate::math::sin_cos;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::LazyLock;
 
@@ -18,7 +19,7 @@ const GAUSS_POINTS: u32 = 16;
 /// The k-th root of the Legendre polynomial, by Newton's method, and its weight.
 fn gauss_node(k: u32) -> Node {
     let degree = f64::from(GAUSS_POINTS);
-    let mut x = (PI * (f64::from(k) + 0.75) / (degree + 0.5)).cos();
+    let mut x = sin_cos(PI * (f64::from(k) + 0.75) / (degree + 0.5)).1;
     let mut slope = 1.0;
     // Quadratic convergence from a guess that is off by less than 1e-3: six steps are more than enough.
     for _ in 0..6 {
@@ -40,9 +41,9 @@ pub(super) fn crowded() -> &'static [Node] {
         (-84..=84)
             .map(|k| {
                 let t = f64::from(k) * STEP;
-                let s = FRAC_PI_2 * t.sinh();
-                let weight = STEP * FRAC_PI_2 * t.cosh() / s.cosh().powi(2) / 2.0;
-                (weight, 1.0 / (1.0 + (-2.0 * s).exp()))
+                let s = FRAC_PI_2 * libm::sinh(t);
+                let weight = STEP * FRAC_PI_2 * libm::cosh(t) / libm::cosh(s).powi(2) / 2.0;
+                (weight, 1.0 / (1.0 + libm::exp(-2.0 * s)))
             })
             .collect()
     });

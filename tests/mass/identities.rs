@@ -1,22 +1,12 @@
 //! What must hold for every rigid body, whatever the formula.
 
 use super::random::{geometry, pose, size};
+use super::weigh::{deviation, solid, weigh};
 use proptest::prelude::*;
 use realnoid::description::{Dimension, Geometry};
-use realnoid::mass::{MassProperties, of_shape};
+use realnoid::mass::MassProperties;
 use realnoid::math::{Mat3, Pose, Vec3};
-
-fn solid(geometry: &Geometry) -> MassProperties {
-    of_shape(geometry, Dimension::Solid, 1000.0).unwrap()
-}
-
-/// Greatest deviation, each value against its own scale; `reach` is the scale of lengths.
-fn deviation(a: &MassProperties, b: &MassProperties, reach: f64) -> f64 {
-    let mass = (a.mass - b.mass).abs() / b.mass;
-    let center = (a.center - b.center).norm() / reach;
-    let inertia = (a.inertia - b.inertia).abs().max() / b.inertia.abs().max();
-    mass.max(center).max(inertia)
-}
+use realnoid::shape::{Meshes, Shape};
 
 fn raised(z: f64) -> Pose {
     Pose::translation(0.0, 0.0, z)
@@ -111,7 +101,7 @@ proptest! {
     #[test]
     fn every_inertia_is_one(parts in prop::collection::vec((geometry(), pose()), 1..6), thickness in 0.001..0.01) {
         for dimension in [Dimension::Solid, Dimension::Hollow { thickness }] {
-            let parts: Vec<_> = parts.iter().map(|(g, at)| of_shape(g, dimension, 1000.0).unwrap().placed(at)).collect();
+            let parts: Vec<_> = parts.iter().map(|(g, at)| weigh(&Shape::new(g.clone()).unwrap(), dimension).placed(at)).collect();
             let whole = MassProperties::sum(&parts);
             let m = whole.principal().moments;
             prop_assert!(m[0] > 0.0, "positive definite");
@@ -123,7 +113,7 @@ proptest! {
     #[test]
     fn the_centre_lies_within_the_bounds(geometry in geometry(), x in pose()) {
         let c = solid(&geometry).placed(&x).center;
-        let b = realnoid::shape::bounds(&geometry, &x).unwrap();
+        let b = realnoid::shape::bounds(&Shape::new(geometry).unwrap(), &x, &Meshes::default()).unwrap();
         prop_assert!((0..3).all(|i| b.min[i] < c[i] && c[i] < b.max[i]));
     }
 }

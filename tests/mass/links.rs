@@ -105,7 +105,7 @@ fn arm_on_a_stand() -> Description {
 fn static_is_allowed_where_nothing_moves_it() {
     let mut description = arm_on_a_stand();
     for link in &mut description.links {
-        link.body.as_mut().unwrap().specific_gravity = 0.0;
+        link.body.as_mut().unwrap().substance.specific_gravity = 0.0;
     }
     let (masses, findings) = link_masses(&description);
     assert!(masses.iter().all(|m| m.mass == 0.0));
@@ -118,7 +118,7 @@ fn static_is_allowed_where_nothing_moves_it() {
 fn a_density_that_is_none_gives_no_mass_and_an_error() {
     for gravity in [-1.0, f64::NAN, f64::INFINITY] {
         let mut description = arm_on_a_stand();
-        description.links[2].body.as_mut().unwrap().specific_gravity = gravity;
+        description.links[2].body.as_mut().unwrap().substance.specific_gravity = gravity;
         let (masses, findings) = link_masses(&description);
         assert_eq!((masses[2].mass, findings.len(), findings[0].code), (0.0, 1, "specific-gravity"));
     }
@@ -140,7 +140,7 @@ fn a_mesh_that_must_carry_mass_is_an_error_at_its_line() {
     let mut description = robot(&link("torso", &body(1.0, ""), &mesh));
     let (masses, findings) = link_masses(&description);
     assert_eq!(masses[0].mass, 0.0);
-    assert_eq!((findings[0].severity, findings[0].code), (Severity::Error, "mass-from-shape-later"));
+    assert_eq!((findings[0].severity, findings[0].code), (Severity::Error, "mesh-file"));
     assert_eq!((findings[0].element.as_str(), findings[0].at.line), ("link 'torso' <mesh>", 6));
     description.links[0].visuals.clear();
     assert_eq!(link_masses(&description).1[0].code, "no-shape-for-mass");

@@ -9,7 +9,7 @@ pub fn size() -> impl Strategy<Value = f64> {
     0.02..1.0
 }
 
-/// Any shape with a formula.
+/// Any shape with an inside.
 pub fn geometry() -> impl Strategy<Value = Geometry> {
     let three = || [size(), size(), size()];
     prop_oneof![
@@ -26,6 +26,14 @@ pub fn geometry() -> impl Strategy<Value = Geometry> {
             length
         }),
         three().prop_map(|[radius_x, radius_y, length]| Geometry::Cone { radius_x, radius_y, length }),
+        (size(), 0.1..0.9).prop_map(|(r, part)| Geometry::Torus { ring_radius: r, pipe_radius: part * r }),
+        (size(), size(), 0.1..1.0).prop_map(|(radius, length, part)| Geometry::OilTank {
+            radius,
+            length,
+            cap_height: part * radius
+        }),
+        three().prop_map(|size| Geometry::Pyramid { size }),
+        (0..5usize, size()).prop_map(|(i, radius)| Geometry::Polyhedron { faces: [4, 6, 8, 12, 20][i], radius }),
         (size(), size(), 0.0..2.5, size()).prop_map(|(radius_x, radius_y, top_scale, length)| Geometry::Frustum {
             radius_x,
             radius_y,

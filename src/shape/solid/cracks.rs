@@ -1,6 +1,6 @@
 //! Cracks: borders that lie so close to each other that the same border is meant.
 
-use super::{Edges, diagonal};
+use super::{Edges, count, diagonal};
 use crate::math::Vec3;
 use crate::shape::TriMesh;
 use std::collections::HashMap;
@@ -34,11 +34,11 @@ pub(super) fn weld(mesh: &mut TriMesh, edges: &Edges) -> Option<String> {
     for corner in mesh.triangles.iter_mut().flatten() {
         *corner = moved.get(corner).copied().unwrap_or(*corner);
     }
-    let n = moved.len();
-    Some(format!("{n} vertices along cracks at most {widest:.1e} m wide were welded to their neighbours"))
+    let n = count(moved.len(), "vertex", "vertices");
+    Some(format!("cracks in the mesh at most {widest:.1e} m wide were closed: {n} welded to a neighbour"))
 }
 
-/// Vertices by cubes as wide as a crack; no two vertices in it are nearer than that, so a cube holds only a few.
+/// Vertices by cubes four cracks wide; no two vertices in it are nearer than a crack, so a cube holds a bounded number.
 struct Grid {
     width: f64,
     cells: HashMap<[i64; 3], Vec<u32>>,
@@ -46,14 +46,16 @@ struct Grid {
 
 impl Grid {
     fn cell(&self, place: Vec3) -> [i64; 3] {
-        [0, 1, 2].map(|i| (place[i] / self.width).floor() as i64)
+        [0, 1, 2].map(|i| (place[i] / (4.0 * self.width)).floor() as i64)
     }
 
+    /// The vertex that is nearest, if it is within a crack's width; and how far away it is, m.
     fn nearest(&self, mesh: &TriMesh, place: Vec3) -> Option<(u32, f64)> {
-        let [x, y, z] = self.cell(place);
-        let around = (0..27)
-            .map(|i| [x.saturating_add(i % 3 - 1), y.saturating_add(i / 3 % 3 - 1), z.saturating_add(i / 9 - 1)]);
-        around
+        let reach = Vec3::repeat(self.width);
+        let (low, high) = (self.cell(place - reach), self.cell(place + reach));
+        let cells = (low[0]..=high[0])
+            .flat_map(|x| (low[1]..=high[1]).flat_map(move |y| (low[2]..=high[2]).map(move |z| [x, y, z])));
+        cells
             .filter_map(|cell| self.cells.get(&cell))
             .flatten()
             .map(|v| (*v, (mesh.vertices[*v as usize] - place).norm()))

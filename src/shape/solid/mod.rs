@@ -19,8 +19,8 @@ use std::collections::HashSet;
 pub enum SolidFault {
     /// Holes, or walls that end inside.
     #[error(
-        "the mesh is not closed: {edges} of its edges have an odd number of triangles (a hole, or a loose wall), the \
-         first between {} and {}", place(&at[0]), place(&at[1])
+        "the mesh is not closed: {} with an odd number of triangles (holes, or loose walls), the first between {} and {}",
+        count(*edges, "edge", "edges"), place(&at[0]), place(&at[1])
     )]
     NotClosed {
         /// How many such edges.
@@ -35,7 +35,10 @@ pub enum SolidFault {
         at: Vec3,
     },
     /// Walls that meet at an edge and face it in ways that cannot all be right.
-    #[error("the mesh contradicts itself: at {edges} edges where more than two triangles meet, their sides do not match; the first is at {}", place(.at))]
+    #[error(
+        "the mesh contradicts itself: {} where more than two triangles meet and their sides do not match, the first at {}",
+        count(*edges, "edge", "edges"), place(at)
+    )]
     Contradiction {
         /// How many such edges.
         edges: usize,
@@ -60,6 +63,11 @@ pub enum SolidFault {
         /// Counted from 0.
         triangle: usize,
     },
+}
+
+/// "1 part", "2 parts".
+fn count(n: usize, one: &str, more: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { more })
 }
 
 fn place(p: &Vec3) -> String {
@@ -122,17 +130,21 @@ fn drop_useless(mesh: &mut TriMesh, told: &mut Vec<String>) {
     mesh.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
     let flat = before - mesh.triangles.len();
     if flat > 0 {
-        told.push(format!("{flat} of {before} triangles have two equal corners: they were left out"));
+        told.push(format!("triangles with two equal corners were left out: {flat} of {before}"));
     }
     let before = mesh.triangles.len();
     let mut seen = HashSet::with_capacity(before);
     let mut kept = mesh.triangles.clone();
     kept.retain(|t| seen.insert(from_least(*t)));
     let twice = before - kept.len();
+    if twice == 0 {
+        return;
+    }
     // Where a surface runs along itself, two equal triangles can both be needed.
-    if twice > 0 && !(Edges::of(&mesh.triangles).balanced() && !Edges::of(&kept).balanced()) {
+    let needed = Edges::of(&mesh.triangles).balanced() && !Edges::of(&kept).balanced();
+    if !needed {
         mesh.triangles = kept;
-        told.push(format!("{twice} of {before} triangles are there more than once: they were left out"));
+        told.push(format!("triangles that are there more than once were left out: {twice} of {before}"));
     }
 }
 

@@ -32,7 +32,7 @@ pub(super) fn agree(mesh: &mut TriMesh, edges: &Edges, told: &mut Vec<String>) -
         }
     }
     let all = mesh.triangles.len();
-    told.push(format!("{count} of {all} triangles faced the other way than their neighbours: they were turned"));
+    told.push(format!("triangles that faced the other way than their neighbours were turned: {count} of {all}"));
     Ok(())
 }
 

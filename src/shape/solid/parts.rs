@@ -1,8 +1,8 @@
 //! Parts of a mesh that are closed by themselves: which lie in which, and whether each faces outwards.
 
-use super::LEAST_VOLUME;
 use super::edges::{Edges, net};
 use super::winding::{Side, side_of};
+use super::{LEAST_VOLUME, count};
 use crate::math::Vec3;
 use crate::shape::TriMesh;
 
@@ -141,33 +141,34 @@ impl Nesting {
 
     fn tell(&self, twice: usize, told: &mut Vec<String>) {
         let doubled = "the space that they share counts twice in the mass";
+        let parts = |n| count(n, "part of the mesh", "parts of the mesh");
         if twice > 0 {
-            told.push(format!("{twice} parts of the mesh lie inside others and are no cavities: {doubled}"));
+            told.push(format!("inside others, and no cavities: {}; {doubled}", parts(twice)));
         }
         if self.crossing > 0 {
-            told.push(format!("{} parts of the mesh cut into others: {doubled}", self.crossing));
+            told.push(format!("cutting into others: {}; {doubled}", parts(self.crossing)));
         }
         if self.left_out > 0 {
-            let n = self.left_out;
-            told.push(format!(
-                "{n} parts of the mesh were not compared with the others, there are too many: {doubled}, if any"
-            ));
+            let n = parts(self.left_out);
+            told.push(format!("not compared with the others, because there are too many: {n}; {doubled}, if any"));
         }
     }
 }
 
 fn turn(mesh: &mut TriMesh, parts: &[Part], turned: &[bool], told: &mut Vec<String>) {
     let inside_out = || parts.iter().zip(turned).filter(|(_, turned)| **turned).map(|(part, _)| part);
-    let mut count = 0;
+    let mut triangles = 0;
     for triangle in inside_out().flat_map(|part| &part.triangles) {
         mesh.triangles[*triangle as usize].swap(1, 2);
-        count += 1;
+        triangles += 1;
     }
     let (all, some) = (parts.len(), inside_out().count());
     if some > 0 && some == all {
-        told.push(format!("the mesh was inside out: all its {count} triangles were turned"));
+        told.push(format!("the mesh was inside out: all its {triangles} triangles were turned"));
     } else if some > 0 {
-        told.push(format!("{some} of {all} parts of the mesh were inside out: their {count} triangles were turned"));
+        told.push(format!(
+            "parts of the mesh that were inside out were turned: {some} of {all}, {triangles} triangles"
+        ));
     }
 }
 
