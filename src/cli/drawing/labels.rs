@@ -8,6 +8,9 @@ use super::view::{Point, View};
 const DIGIT: f64 = 6.2;
 const HEIGHT: f64 = 9.0;
 
+/// More numbers than this at one place are told by dots.
+const MOST: usize = 3;
+
 #[derive(Clone, Copy)]
 struct Frame {
     low: Point,
@@ -59,6 +62,7 @@ struct Group {
     at: Point,
     radius: f64,
     text: String,
+    count: usize,
 }
 
 fn grouped(marks: &[Mark], view: &View) -> Vec<Group> {
@@ -68,10 +72,15 @@ fn grouped(marks: &[Mark], view: &View) -> Vec<Group> {
         let near = |g: &&mut Group| (g.at[0] - at[0]).hypot(g.at[1] - at[1]) < 2.0;
         match groups.iter_mut().find(near) {
             Some(group) => {
-                group.text += &format!(" {}", mark.number);
+                group.count += 1;
+                match group.count {
+                    ..=MOST => group.text += &format!(" {}", mark.number),
+                    _ if !group.text.ends_with('…') => group.text.push_str(" …"),
+                    _ => {}
+                }
                 group.radius = group.radius.max(mark.radius);
             }
-            None => groups.push(Group { at, radius: mark.radius, text: mark.number.to_string() }),
+            None => groups.push(Group { at, radius: mark.radius, text: mark.number.to_string(), count: 1 }),
         }
     }
     groups

@@ -5,11 +5,14 @@ use super::svg::{line, quartered_circle, text};
 use super::view::Point;
 
 /// Width of one column of links, pixels.
-pub(super) const COLUMN: f64 = 230.0;
+pub(super) const COLUMN: f64 = 250.0;
 /// Distance between lines.
 const ROW: f64 = 15.5;
 /// More links than this take a second column.
 const ROWS: usize = 40;
+
+/// So many reasons for shapes that are not drawn are told in full.
+const FEW: usize = 2;
 
 /// Columns that the list takes.
 pub(super) fn columns(links: usize) -> usize {
@@ -62,7 +65,10 @@ pub(super) fn key(marks: &[Mark], missing: &[String], corner: Point) -> (String,
     };
     let heaviest = marks.iter().map(|m| m.mass).fold(0.0, f64::max);
     if heaviest > 0.0 {
-        row(&|at| quartered_circle("whole", at, WHOLE), &["centre of mass of the whole,".into(), "with its plumb line".into()]);
+        row(
+            &|at| quartered_circle("whole", at, WHOLE),
+            &["centre of mass of the whole,".into(), "with its plumb line".into()],
+        );
         let size = radius(heaviest, heaviest);
         let words = format!("centre of mass of a link ({})", kilograms(heaviest));
         row(&|at| quartered_circle("com", at, size), &[words, "its area is in proportion to the mass".into()]);
@@ -70,11 +76,17 @@ pub(super) fn key(marks: &[Mark], missing: &[String], corner: Point) -> (String,
         for (class, name) in ["a1", "a2", "a3"].iter().zip(names) {
             row(&|[x, y]| line(class, [x - 12.0, y], [x + 12.0, y]), &[name.into()]);
         }
-        row(&|_| String::new(), &["each ± the radius of gyration about it,".into(), "to the scale of the drawing".into()]);
+        row(
+            &|_| String::new(),
+            &["each as long as the radius of gyration".into(), "about it, to the scale of the drawing".into()],
+        );
     }
-    for words in missing {
+    for words in missing.iter().take(FEW) {
         let lines = std::iter::once("not drawn:".to_string()).chain(wrapped(words, 38));
         row(&|_| String::new(), &lines.collect::<Vec<_>>());
+    }
+    if missing.len() > FEW {
+        row(&|_| String::new(), &[format!("and {} more shapes not drawn", missing.len() - FEW)]);
     }
     (out, y)
 }

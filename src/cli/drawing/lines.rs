@@ -28,7 +28,9 @@ pub(super) fn chained(segments: &[[Point; 2]], tolerance: f64) -> Vec<Vec<Point>
         let mut run = vec![second, first];
         for _ in 0..2 {
             run.reverse();
-            while let Some(next) = run.last().and_then(|last| follow(&at[&key(last)], &segments, &mut used, key(last), key)) {
+            while let Some(next) =
+                run.last().and_then(|last| follow(&at[&key(last)], &segments, &mut used, key(last), key))
+            {
                 run.push(next);
             }
         }
@@ -37,7 +39,7 @@ pub(super) fn chained(segments: &[[Point; 2]], tolerance: f64) -> Vec<Vec<Point>
     runs
 }
 
-/// The other end of an unused segment that starts here, if exactly one way leads on.
+/// The other end of an unused segment that starts at `place`.
 fn follow(
     here: &[usize],
     segments: &[[Point; 2]],
@@ -54,7 +56,7 @@ fn follow(
 /// The line without the points that lie within `tolerance` of it (Ramer, Douglas and Peucker). A ring that does not repeat
 /// its first point keeps its first and last.
 pub(super) fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
-    let Some((&first, &last)) = line.first().zip(line.last()) else { return vec![] };
+    let Some(&first) = line.first() else { return vec![] };
     let mut keep = vec![first];
     let mut open = vec![(0, line.len() - 1)];
     while let Some((from, to)) = open.pop() {
@@ -65,10 +67,33 @@ pub(super) fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
             None => keep.push(line[to]),
         }
     }
-    if line.len() == 1 {
-        keep.push(last);
-    }
     keep
+}
+
+/// A ring without the points at which it turns back upon itself, and which enclose nothing wider than `tolerance`.
+pub(super) fn without_spikes(ring: &[Point], tolerance: f64) -> Vec<Point> {
+    let spike = |a: Point, b: Point, c: Point| {
+        let back = (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1]) > 0.0;
+        back && from_line(c, a, b).min(from_line(a, b, c)) < tolerance
+    };
+    let mut kept = ring.to_vec();
+    // The second time starts elsewhere: the first and the last point have neighbours as well.
+    for _ in 0..2 {
+        let mut next: Vec<Point> = Vec::with_capacity(kept.len());
+        for point in kept {
+            next.push(point);
+            while let [.., a, b, c] = next[..]
+                && spike(a, b, c)
+            {
+                next.truncate(next.len() - 2);
+                next.push(c);
+            }
+        }
+        let half = next.len() / 2;
+        next.rotate_left(half);
+        kept = next;
+    }
+    kept
 }
 
 /// Distance of `p` from the segment a b.

@@ -7,7 +7,7 @@ use crate::mass::MassProperties;
 use crate::math::Vec3;
 
 /// Radii of the signs, pixels: the heaviest link's, the least that can be seen, and the whole robot's.
-const LARGEST: f64 = 10.0;
+const LARGEST: f64 = 9.0;
 const SMALLEST: f64 = 2.0;
 pub(super) const WHOLE: f64 = 12.0;
 
@@ -23,7 +23,7 @@ pub(super) struct Mark<'a> {
     pub center: Vec3,
     /// Radius of the sign, pixels.
     pub radius: f64,
-    /// Half lines of the principal axes, least moment first: the radius of gyration about the axis, m.
+    /// Half lines of the principal axes, least moment first: half the radius of gyration about the axis, m.
     pub axes: [Vec3; 3],
 }
 
@@ -34,7 +34,8 @@ pub(super) fn marks<'a>(drawing: &Drawing<'a>) -> Vec<Mark<'a>> {
     let mark = |(i, link): (usize, &&DrawnLink<'a>)| {
         let properties = link.properties.placed(&link.pose);
         let principal = properties.principal();
-        let axis = |i: usize| principal.axes.column(i) * (principal.moments[i].max(0.0) / properties.mass).sqrt();
+        let gyration = |i: usize| (principal.moments[i].max(0.0) / properties.mass).sqrt();
+        let axis = |i: usize| principal.axes.column(i) * (gyration(i) / 2.0);
         Mark {
             number: i + 1,
             name: link.name,

@@ -2,7 +2,7 @@
 
 use super::contour::{Contour, contour};
 use super::labels::labels;
-use super::marks::{Mark, WHOLE, drawn, drawn_whole, marks, whole};
+use super::marks::{WHOLE, drawn, drawn_whole, marks, whole};
 use super::parts::{Part, extent, parts};
 use super::svg::{escaped, line, number, path_element, text};
 use super::view::{FRONT, Point, RIGHT, Side, View};
@@ -22,7 +22,7 @@ text{font-family:system-ui,-apple-system,'Segoe UI','Helvetica Neue',Arial,'Deja
 .l{text-anchor:start}.r{text-anchor:end}.m{text-anchor:middle}
 .n{font-size:10.5px;text-anchor:middle;stroke:#fff;stroke-width:2.6px;stroke-linejoin:round;paint-order:stroke}
 .f{fill:#a9bccf;fill-opacity:.34;stroke:#51657b;stroke-width:.8px;stroke-linejoin:round}
-.e{fill:none;stroke:#51657b;stroke-width:.6px;stroke-linecap:round;stroke-linejoin:round;stroke-opacity:.75}
+.e{fill:none;stroke:#51657b;stroke-width:.7px;stroke-linecap:round;stroke-linejoin:round;stroke-opacity:.85}
 .b{fill:none;stroke:#51657b;stroke-width:.5px;stroke-opacity:.22}
 .g{stroke:#8b96a3;stroke-width:1.2px}.plumb{stroke:#c8741a;stroke-width:1px;stroke-dasharray:5 4}
 .a1,.a2,.a3{stroke-width:1.5px;stroke-linecap:round}.a1{stroke:#d3302f}.a2{stroke:#2c9a42}.a3{stroke:#2c62d2}
@@ -54,7 +54,13 @@ pub(super) fn page(drawing: &Drawing) -> String {
     let (list, below) = legend::list(&marks, [right, TOP]);
     let (key, end) = legend::key(&marks, &missing, [right, below + 18.0]);
     let size = [right + legend::COLUMN * legend::columns(marks.len()) as f64 + MARGIN, end.max(bottom + 64.0) + 12.0];
-    framed(drawing, &marks, whole.mass, size, &(body + &list + &key))
+    let words = format!(
+        "{} in {} links with mass, {:.2} m high; every axis at zero",
+        legend::kilograms(whole.mass),
+        marks.len(),
+        extent.max.z - extent.min.z
+    );
+    framed(drawing.title, &words, size, &(body + &list + &key))
 }
 
 /// Both views beside each other at one scale.
@@ -105,13 +111,12 @@ fn scale_bar([x, y]: Point, scale: f64) -> String {
     line("g", [x, y], [end, y]) + &ticks + &text("l", [end + 8.0, y + 4.0], &words)
 }
 
-fn framed(drawing: &Drawing, marks: &[Mark], mass: f64, size: [f64; 2], body: &str) -> String {
+fn framed(title: &str, words: &str, size: [f64; 2], body: &str) -> String {
     let [width, height] = size.map(number);
-    let extent = format!("{} in {} links with mass; every axis at zero", legend::kilograms(mass), marks.len());
-    let title = text("h", [MARGIN, 40.0], drawing.title) + &text("s", [MARGIN, 62.0], &extent);
+    let head = text("h", [MARGIN, 40.0], title) + &text("s", [MARGIN, 62.0], words);
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n\
-         <title>{}</title>\n<style>{STYLE}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{title}{body}</svg>\n",
-        escaped(drawing.title)
+         <title>{}</title>\n<style>{STYLE}</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{head}{body}</svg>\n",
+        escaped(title)
     )
 }

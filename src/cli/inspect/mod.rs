@@ -6,6 +6,7 @@ mod values;
 
 use super::args::InspectArgs;
 use super::base_by_name;
+use super::drawing::draw_robot;
 use super::load::load;
 use std::process::ExitCode;
 pub use values::Unit;
@@ -19,6 +20,12 @@ pub fn run(args: &InspectArgs) -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
+    if let Some(file) = &args.svg
+        && let Err(error) = std::fs::write(file, draw_robot(&loaded))
+    {
+        eprintln!("error: cannot write the drawing to {}: {error}", file.display());
+        return ExitCode::FAILURE;
+    }
     let unit = Unit::named(&args.unit);
     let text = if args.urdf_with_inertials {
         loaded.published

@@ -137,8 +137,12 @@ fn drop_useless(mesh: &mut TriMesh, told: &mut Vec<String>) {
     let mut kept = mesh.triangles.clone();
     kept.retain(|t| seen.insert(from_least(*t)));
     let twice = before - kept.len();
+    if twice == 0 {
+        return;
+    }
     // Where a surface runs along itself, two equal triangles can both be needed.
-    if twice > 0 && !(Edges::of(&mesh.triangles).balanced() && !Edges::of(&kept).balanced()) {
+    let needed = Edges::of(&mesh.triangles).balanced() && !Edges::of(&kept).balanced();
+    if !needed {
         mesh.triangles = kept;
         told.push(format!("triangles that are there more than once were left out: {twice} of {before}"));
     }
