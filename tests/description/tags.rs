@@ -143,7 +143,7 @@ fn what_a_shape_does_not_take_is_told() {
         |shape: &str| codes(&robot(&format!("<realnoid><body specific_gravity='1'>{shape}</body></realnoid>"), "", ""));
     let only = |shape: &str, code: &str| {
         let codes = told(shape);
-        assert!(codes.iter().any(|c| *c == code), "{code} is missing in {codes:?}");
+        assert!(codes.contains(&code), "{code} is missing in {codes:?}");
     };
     only("<shape scale='1 0 1'><sphere radius='1'/></shape>", "out-of-range");
     only("<shape scale='1 nan 1'><sphere radius='1'/></shape>", "not-finite");

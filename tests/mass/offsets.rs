@@ -37,6 +37,9 @@ fn with(geometry: Geometry, fillet: f64) -> Shape {
     Shape::finished(geometry, Finish { fillet, ..Finish::default() }, Scaling::default()).unwrap()
 }
 
+/// A shape that has grown by so much on all sides, m.
+type Grown<'a> = Box<dyn Fn(f64) -> Shape + 'a>;
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 30, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -46,7 +49,7 @@ proptest! {
         let f = part * 0.1;
         let step = f / 10.0;
         let grown = |e: f64| l.map(|s| s + 2.0 * e);
-        let shapes: [(&str, Box<dyn Fn(f64) -> Shape>); 6] = [
+        let shapes: [(&str, Grown); 6] = [
             ("sphere", Box::new(|e| with(Geometry::Sphere { radius: a + e }, 0.0))),
             ("torus", Box::new(|e| with(Geometry::Torus { ring_radius: a + b, pipe_radius: a * part + e }, 0.0))),
             ("capsule", Box::new(|e| with(
