@@ -207,6 +207,8 @@ pub struct Body {
     pub zero_exponent: Option<i32>,
     /// `<shape>` children: what the mass is computed from; empty = the link's visuals.
     pub shapes: Vec<PlacedShape>,
+    /// How many `<shape>` children could not be read; each is reported.
+    pub misread: usize,
 }
 
 impl Body {

@@ -3,7 +3,7 @@
 use super::MassProperties;
 use super::of_shape::Refusal;
 use crate::description::{Body, Finding, Link, PlacedShape, Severity};
-use crate::shape::ShapeFault;
+use crate::shape::{MeshFault, ShapeFault, SolidFault};
 
 pub(super) fn static_in_chain(link: &Link, body: &Body) -> Finding {
     body_error(
@@ -41,19 +41,11 @@ pub(super) fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Fi
     let (code, mend) = match refusal {
         Refusal::Shape(ShapeFault::NoVolume(..)) => ("shape-without-volume", "write a size above 0, in metres"),
         Refusal::Shape(_) => ("shape", "correct the fillet, slice or scale"),
-        Refusal::File(_) => {
-            ("mesh-file", "correct the file name, or tell the folder of a package by --package NAME=DIR")
-        }
-        Refusal::NotSolid(_) => (
-            "mesh-without-inside",
-            "close the mesh in a mesh editor, or write dimension=\"2d\" and a thickness, or use a simpler <shape>",
-        ),
+        Refusal::File(fault) => bad_file(fault),
+        Refusal::NotSolid(fault) => no_solid(fault),
         Refusal::Open(_) => ("surface-without-inside", "write dimension=\"2d\" and a thickness"),
         Refusal::NoArea(_) => ("shape-without-area", "give the corners of at least one triangle that is not a line"),
-        Refusal::NoVolume(_) => (
-            "mesh-without-volume",
-            "give a mesh that encloses something, or write dimension=\"2d\" and a thickness, or use a simpler <shape>",
-        ),
+        Refusal::NoVolume(_) => ("mesh-without-volume", ANOTHER_BODY),
         Refusal::OutOfRange { .. } => {
             ("mass-out-of-range", "write sizes in metres and the specific gravity as a multiple of water's")
         }
@@ -66,6 +58,45 @@ pub(super) fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Fi
         element: format!("link '{}' <{}>", link.name, shape.geometry.kind()),
         at: shape.at,
         mend: mend.into(),
+    }
+}
+
+/// What helps when a mesh is no solid.
+const ANOTHER_BODY: &str =
+    "give a mesh that encloses something, or write dimension=\"2d\" and a thickness, or use a simpler <shape>";
+
+fn no_solid(fault: &SolidFault) -> (&'static str, &'static str) {
+    match fault {
+        SolidFault::NotClosed { .. } => (
+            "mesh-not-closed",
+            "close the mesh in a mesh editor, or write dimension=\"2d\" and a thickness, or use a simpler <shape>",
+        ),
+        SolidFault::NotOrientable { .. } => ("mesh-without-inside", ANOTHER_BODY),
+        SolidFault::Contradiction { .. } => (
+            "mesh-contradicts-itself",
+            "turn the faces in a mesh editor so that all face outwards, or use a simpler <shape>",
+        ),
+        SolidFault::Degenerate { .. } => ("mesh-without-area", ANOTHER_BODY),
+        SolidFault::NoVolume { .. } => ("mesh-without-volume", ANOTHER_BODY),
+        SolidFault::Malformed { .. } => ("mesh-unreadable", "save the mesh anew from a mesh editor"),
+    }
+}
+
+fn bad_file(fault: &MeshFault) -> (&'static str, &'static str) {
+    match fault {
+        MeshFault::NotFound(_) => {
+            ("mesh-not-found", "correct the file name; a relative one starts at the folder of the URDF")
+        }
+        MeshFault::UnknownPackage { .. } => {
+            ("unknown-package", "tell its folder by --package NAME=DIR, or source the workspace that holds it")
+        }
+        MeshFault::Address { .. } => ("mesh-address", "copy the file to this computer and name it by its path"),
+        MeshFault::UnknownFormat { .. } => ("mesh-format", "save the mesh as STL, OBJ or DAE"),
+        MeshFault::TooLarge { .. } => ("mesh-too-large", "simplify the mesh in a mesh editor"),
+        MeshFault::Unreadable { .. } | MeshFault::NoPlace { .. } | MeshFault::NoTriangles { .. } => {
+            ("mesh-unreadable", "save the file anew, or correct what the message names")
+        }
+        MeshFault::Terrain(_) => ("terrain-heights", "correct the heights"),
     }
 }
 

@@ -127,7 +127,7 @@ fn an_unknown_package_says_how_to_tell_it() {
     let paths = SearchPaths { ament_prefix_path: ament, ..SearchPaths::default() };
     let fault = Meshes::with_paths(&folder.path().join("r.urdf"), &[], paths).mesh(URI).unwrap_err();
     assert!(matches!(&fault, MeshFault::UnknownPackage { package, .. } if package == "robot"));
-    for part in ["--package robot=DIR", "ROS_PACKAGE_PATH (not set)", "AMENT_PREFIX_PATH (", "prefix"] {
+    for part in ["package \"robot\"", "ROS_PACKAGE_PATH (not set)", "AMENT_PREFIX_PATH (", "prefix"] {
         assert!(fault.to_string().contains(part), "{fault}");
     }
     let nameless = folder.meshes().mesh("package:///a.obj").unwrap_err();

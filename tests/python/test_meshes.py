@@ -230,7 +230,7 @@ def test_just_the_open_link_meshes_are_refused(robot):
     errors = {element.split("'")[1]: (code, line) for severity, code, _, line, element in found if severity == "error"}
     lines = {name: i + 2 for i, name in enumerate(paths)}
     still_open = {name for name, path in paths.items() if not is_closed(opinion(path))}
-    assert errors == {name: ("mesh-without-inside", lines[name]) for name in still_open}
+    assert errors == {name: ("mesh-not-closed", lines[name]) for name in still_open}
     assert still_open and len(still_open) < len(paths) / 4, "the robots have both kinds"
 
 
@@ -305,7 +305,7 @@ def test_every_public_mesh_is_read(tmp_path):
     meshes = sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".stl", ".obj", ".dae"))
     robot = urdf({f"l{i}": (path, "", "") for i, path in enumerate(meshes)}, tmp_path)
     found = findings(robot)
-    assert {(severity, code) for severity, code, *_ in found} == {("error", "mesh-without-inside"), ("warning", "mesh-repaired")}
+    assert {(severity, code) for severity, code, *_ in found} == {("error", "mesh-not-closed"), ("warning", "mesh-repaired")}
     refused = {element for severity, _, _, _, element in found if severity == "error"}
     assert len(meshes) > 500 and len(refused) < len(meshes) / 2
 
@@ -338,5 +338,5 @@ def test_file_addresses_and_packages(tmp_path):
 def test_a_missing_package_is_told_with_link_and_line(tmp_path):
     robot = urdf({"a": ("package://nowhere/a.stl", "", "")}, tmp_path)
     [(severity, code, message, line, element)] = findings(robot)
-    assert (severity, code, line) == ("error", "mesh-file", 2) and "'a'" in element
-    assert "--package nowhere=DIR" in message
+    assert (severity, code, line) == ("error", "unknown-package", 2) and "'a'" in element
+    assert "nowhere" in message and "ROS_PACKAGE_PATH" in message

@@ -20,7 +20,7 @@ pub(super) fn check(d: &Description, tree: Option<&Tree>, report: &mut Report) {
 fn check_body(link: &Link, report: &mut Report) {
     let Some(body) = &link.body else { return };
     let place = Place { element: format!("link '{}' <body>", link.name), at: body.at };
-    if body.shapes.is_empty() && link.visuals.is_empty() {
+    if body.shapes.is_empty() && body.misread == 0 && link.visuals.is_empty() {
         let message = "there is no shape to compute the mass from".to_string();
         let mend = "add a <visual>, or a <shape> inside <body>";
         report.add(Finding::error("body-without-shape", place, message, mend));

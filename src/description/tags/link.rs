@@ -91,12 +91,13 @@ fn read_body(element: &Element, report: &mut Report) -> Option<Body> {
     let values = BODY.read(element, report);
     let gravity = values.number("specific_gravity");
     let substance = body::substance(&values, element, gravity.unwrap_or(1.0), report);
-    let shapes = element.all("shape").filter_map(|shape| body::shape(&shape, &substance, report)).collect();
+    let shapes: Vec<_> = element.all("shape").filter_map(|shape| body::shape(&shape, &substance, report)).collect();
     Some(Body {
         at: element.place(report).at,
         substance: gravity.map(|_| substance)?,
         l_scale: values.number_or("l_scale", 1.0),
         zero_exponent: values.number("zero_exponent").map(|exponent| exponent as i32),
+        misread: element.all("shape").count() - shapes.len(),
         shapes,
     })
 }

@@ -7,10 +7,7 @@ pub enum MeshFault {
     #[error("{0}")]
     NotFound(String),
     /// `package://NAME/…` with a NAME that nothing leads to.
-    #[error(
-        "package \"{package}\" of {filename} is not known: it was looked for {looked}; tell its folder by \
-         --package {package}=DIR, or source the workspace that holds it"
-    )]
+    #[error("package \"{package}\" of {filename} is not known: it was looked for {looked}")]
     UnknownPackage {
         /// As written.
         filename: String,

@@ -105,7 +105,7 @@ impl Places {
         let paths = &self.paths;
         let ros = shown("ROS_PACKAGE_PATH", &paths.ros_package_path);
         let ament = shown("AMENT_PREFIX_PATH", &paths.ament_prefix_path);
-        let folder = std::path::absolute(&self.folder).unwrap_or_else(|_| self.folder.clone());
+        let folder = self.above().into_iter().next().unwrap_or_else(|| self.folder.clone());
         format!("in {ros}, in {ament}, and for a folder \"{package}\" above {}", folder.display())
     }
 }
