@@ -3,7 +3,7 @@
 
 mod support;
 
-use realnoid::cli::load::load;
+use realnoid::cli::load::{Source, load};
 use realnoid::model::Base;
 use realnoid::world::{AxisCommand, Integrator, Settings, World};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -48,7 +48,7 @@ fn the_counter_counts() {
 fn a_thousand_steps_allocate_nothing() {
     for base in [Base::Fixed, Base::Free] {
         for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
-            let model = load(None, base).unwrap_or_else(|report| panic!("{report}")).model;
+            let model = load(Source::default(), base).unwrap_or_else(|report| panic!("{report}")).model;
             let settings = Settings { integrator, steps_per_interval: 1, ..Settings::default() };
             let mut world = World::new(model.clone(), settings).unwrap();
             let mut snapshot = world.new_snapshot();

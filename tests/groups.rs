@@ -3,7 +3,7 @@
 
 mod support;
 
-use realnoid::cli::load::load;
+use realnoid::cli::load::{Source, load};
 use realnoid::engine::State;
 use realnoid::math::Vec3;
 use realnoid::model::{Base, Model};
@@ -35,7 +35,9 @@ fn limb(kind: &str, limit: &str, dynamics: &str) -> Arc<Model> {
     );
     let mut file = tempfile::Builder::new().suffix(".urdf").tempfile().unwrap();
     file.write_all(text.as_bytes()).unwrap();
-    load(Some(file.path()), Base::Fixed).unwrap_or_else(|report| panic!("{report}")).model
+    load(Source { urdf: Some(file.path()), packages: &[] }, Base::Fixed)
+        .unwrap_or_else(|report| panic!("{report}"))
+        .model
 }
 
 const WIDE: &str = "<limit lower='-1.5' upper='1.5' effort='40' velocity='20'/>";

@@ -1,7 +1,7 @@
 //! Loading: what only the whole model shows.
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use realnoid::cli::load::examine;
+use realnoid::cli::load::{Source, examine};
 use realnoid::math::Pose;
 use realnoid::model::Base;
 use std::io::Write;
@@ -18,7 +18,7 @@ fn errors_on(root: &str, link: &str, axis: &str, base: Base) -> Vec<(String, u32
     );
     let mut file = tempfile::Builder::new().suffix(".urdf").tempfile().unwrap();
     file.write_all(text.as_bytes()).unwrap();
-    let examined = examine(Some(file.path()), base, Pose::identity()).unwrap();
+    let examined = examine(Source { urdf: Some(file.path()), packages: &[] }, base, Pose::identity()).unwrap();
     let errors = examined.findings.iter().filter(|f| f.severity == realnoid::description::Severity::Error);
     let found: Vec<_> = errors.map(|f| (f.code.to_owned(), f.at.line)).collect();
     assert_eq!(found.is_empty(), examined.is_sound());

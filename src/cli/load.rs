@@ -14,8 +14,8 @@ pub const EMBEDDED: &str = include_str!("../../urdf/origin.urdf");
 /// How it is called in messages.
 pub const EMBEDDED_NAME: &str = "urdf/origin.urdf";
 
-/// Which robot.
-#[derive(Clone, Copy)]
+/// Which robot; by default the embedded humanoid.
+#[derive(Clone, Copy, Default)]
 pub struct Source<'a> {
     /// URDF file; `None`: the embedded humanoid.
     pub urdf: Option<&'a Path>,

@@ -23,8 +23,8 @@ pub(super) enum Domain {
     Unit,
     AtLeast(f64),
     OneOf(&'static [f64]),
-    /// A whole number from this one up, and no more than a million.
-    Whole(u32),
+    /// A whole number between these two.
+    Whole(u32, u32),
     /// A whole number of either sign, with at most two digits.
     Exponent,
 }
@@ -38,7 +38,7 @@ impl Domain {
             Self::Unit => (0.0..=1.0).contains(&x),
             Self::AtLeast(least) => x >= least,
             Self::OneOf(list) => list.contains(&x),
-            Self::Whole(least) => x.fract() == 0.0 && (f64::from(least)..=1e6).contains(&x),
+            Self::Whole(least, most) => x.fract() == 0.0 && (f64::from(least)..=f64::from(most)).contains(&x),
             Self::Exponent => x.fract() == 0.0 && x.abs() < 100.0,
         }
     }
@@ -51,7 +51,7 @@ impl Domain {
             Self::NonNegative => "0 or greater".into(),
             Self::Unit => "from 0 to 1".into(),
             Self::AtLeast(least) => format!("at least {least}"),
-            Self::Whole(least) => format!("a whole number, at least {least}"),
+            Self::Whole(least, most) => format!("a whole number from {least} to {most}"),
             Self::Exponent => "a whole number with at most two digits".into(),
             Self::OneOf(list) => {
                 format!("one of {}", list.iter().map(f64::to_string).collect::<Vec<_>>().join(", "))

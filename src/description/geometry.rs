@@ -168,12 +168,18 @@ pub enum Dimension {
     },
 }
 
+/// Most segments of a turn: a sphere of them has four million triangles.
+pub const MOST_SEGMENTS: u32 = 2000;
+/// Most segments of a length: a box of them has three million triangles.
+pub const MOST_FLAT_SEGMENTS: u32 = 500;
+
 /// Into how many segments a primitive is divided where it becomes a polygon mesh (B-4, B-5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subdivision {
-    /// Of a full turn; a half circle of an outline takes half as many. At least 3.
+    /// Of a full turn; a half circle of an outline takes half as many. 3 to [`MOST_SEGMENTS`].
     pub around: u32,
-    /// Of a straight length, where more of them do not change the shape. At least 1; 1 if the subdivision is limited (B-5).
+    /// Of a straight length, where more of them do not change the shape; 1 if the
+    /// subdivision is limited (B-5). 1 to [`MOST_FLAT_SEGMENTS`].
     pub flat: u32,
 }
 

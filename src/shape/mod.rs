@@ -19,5 +19,5 @@ pub use meshes::{HeightGrid, LONGEST_FILE, MeshFault, Meshes, SearchPaths};
 pub use outline::{Lathe, Piece, lathe};
 pub use solid::{SolidFault, closed_solid};
 pub use support::Support;
-pub use tessellate::{MOST_SEGMENTS, tessellate};
+pub use tessellate::tessellate;
 pub use trimesh::TriMesh;

@@ -143,7 +143,7 @@ fn what_a_shape_does_not_take_is_told() {
         |shape: &str| codes(&robot(&format!("<realnoid><body specific_gravity='1'>{shape}</body></realnoid>"), "", ""));
     let only = |shape: &str, code: &str| {
         let codes = told(shape);
-        assert!(codes.iter().any(|c| *c == code), "{code} is missing in {codes:?}");
+        assert!(codes.contains(&code), "{code} is missing in {codes:?}");
     };
     only("<shape scale='1 0 1'><sphere radius='1'/></shape>", "out-of-range");
     only("<shape scale='1 nan 1'><sphere radius='1'/></shape>", "not-finite");
@@ -153,6 +153,8 @@ fn what_a_shape_does_not_take_is_told() {
     only("<shape scale_top='-1'><capsule radius='1' length='1'/></shape>", "out-of-range");
     only("<shape polygonise='true'><box size='1 1 1' fillet='0.1'/></shape>", "polygonise-ignored");
     only("<shape polygonise='true' dimension='2d' thickness='0.1'><sphere radius='1'/></shape>", "polygonise-ignored");
+    only("<shape segments='2001'><sphere radius='1'/></shape>", "out-of-range");
+    only("<shape flat_segments='1.5'><sphere radius='1'/></shape>", "out-of-range");
     only("<shape segments='2'><sphere radius='1'/></shape>", "out-of-range");
     only("<shape><cylinder radius='1' length='1' slice='1 0'/></shape>", "slice");
     only("<shape><cylinder radius='1' length='1' slice='0 7'/></shape>", "slice");

@@ -40,6 +40,9 @@ fn with(geometry: Geometry, fillet: f64) -> Shape {
     Shape::finished(geometry, Finish { fillet, ..Finish::default() }, Scaling::default()).unwrap()
 }
 
+/// A shape that has grown by so much on all sides, m.
+type Grown<'a> = Box<dyn Fn(f64) -> Shape + 'a>;
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 30, failure_persistence: None, ..ProptestConfig::default() })]
 

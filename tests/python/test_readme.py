@@ -278,3 +278,11 @@ def test_architecture_names_every_room_in_order_and_tests_that_exist():
 def test_the_picture_of_the_humanoid_is_drawn_from_the_present_urdf():
     drawn = subprocess.check_output([sys.executable, ROOT / "docs/images/draw_humanoid.py"], text=True)
     assert drawn == (ROOT / "docs/images/humanoid.svg").read_text(), "docs/images/draw_humanoid.py > docs/images/humanoid.svg"
+
+
+@pytest.mark.parametrize("urdf, picture", [("urdf/origin.urdf", "origin.svg"), ("urdf/shapes.urdf", "shapes.svg")])
+def test_the_drawings_are_those_of_inspect(urdf, picture, tmp_path):
+    drawn = tmp_path / picture
+    subprocess.run([BINARY, "inspect", urdf, "--svg", drawn], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    told = f"realnoid inspect {urdf} --svg docs/images/{picture}"
+    assert drawn.read_text() == (ROOT / "docs/images" / picture).read_text(), f"draw it anew: {told}"

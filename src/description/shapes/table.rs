@@ -96,7 +96,7 @@ pub(in super::super) const SHAPES: &[Tag] = &[
             Attribute::optional("size", Kind::Vector(3, Domain::Positive)),
             maybe_length("radius"),
             Attribute::optional("height", LENGTH),
-            Attribute::optional("columns", Kind::Number(Domain::Whole(2))),
+            Attribute::optional("columns", Kind::Number(Domain::Whole(2, 1_000_000))),
             Attribute::optional("heights", Kind::Numbers),
             Attribute::optional("filename", Kind::Text),
         ],

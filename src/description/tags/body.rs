@@ -4,7 +4,9 @@ use super::super::element::{Domain, Element};
 use super::super::finding::Finding;
 use super::super::report::Report;
 use super::super::rules::{Attribute, Kind, Tag, Values};
-use super::super::{Dimension, Geometry, PlacedShape, Scaling, Subdivision, Substance, shapes};
+use super::super::{
+    Dimension, Geometry, MOST_FLAT_SEGMENTS, MOST_SEGMENTS, PlacedShape, Scaling, Subdivision, Substance, shapes,
+};
 
 /// B-3: 0.001 of the smallest system unit, the millimetre.
 const LEAST_THICKNESS: f64 = 1e-6;
@@ -16,8 +18,9 @@ pub(super) const DIMENSION: Attribute = Attribute::optional("dimension", Kind::W
 pub(super) const THICKNESS: Attribute =
     Attribute::optional("thickness", Kind::Number(Domain::AtLeast(LEAST_THICKNESS)));
 pub(super) const POLYGONISE: Attribute = Attribute::optional("polygonise", Kind::Flag);
-pub(super) const SEGMENTS: Attribute = Attribute::optional("segments", Kind::Number(Domain::Whole(3)));
-pub(super) const FLAT_SEGMENTS: Attribute = Attribute::optional("flat_segments", Kind::Number(Domain::Whole(1)));
+pub(super) const SEGMENTS: Attribute = Attribute::optional("segments", Kind::Number(Domain::Whole(3, MOST_SEGMENTS)));
+pub(super) const FLAT_SEGMENTS: Attribute =
+    Attribute::optional("flat_segments", Kind::Number(Domain::Whole(1, MOST_FLAT_SEGMENTS)));
 pub(super) const LIMIT_SUBDIVISIONS: Attribute = Attribute::optional("limit_subdivisions", Kind::Flag);
 const SCALE: Attribute = Attribute::optional("scale", Kind::Vector(3, Domain::Any));
 const SCALE_TOP: Attribute = Attribute::optional("scale_top", Kind::Number(Domain::NonNegative));

@@ -8,10 +8,7 @@ mod terrain;
 mod turned;
 
 use super::{MeshFault, Meshes, Shape, TriMesh, lathe};
-use crate::description::{Geometry, Subdivision};
-
-/// More segments than this are taken as this many: a sphere of them has four million triangles.
-pub const MOST_SEGMENTS: u32 = 2000;
+use crate::description::{Geometry, MOST_FLAT_SEGMENTS, MOST_SEGMENTS, Subdivision};
 
 /// The surface of a shape as triangles, in its own frame, facing outwards; metres. Where the shape has an inside
 /// ([`Shape::is_open`] says no), each directed edge has its one opposite: the mesh is closed by index. A mesh file is
@@ -22,11 +19,13 @@ pub const MOST_SEGMENTS: u32 = 2000;
 /// 8: corners on the axes; 12: (±1, ±1, ±1), (0, ±φ, ±1/φ) and the latter's cyclic permutations;
 /// 20: (0, ±1, ±φ) and its cyclic permutations, φ being the golden ratio.
 ///
+/// A subdivision out of its range is taken as the next one in it; the reader of the text refuses such a one.
+///
 /// # Errors
 /// A mesh or height file is not found or not read, or heights make no surface.
 pub fn tessellate(shape: &Shape, subdivision: Subdivision, meshes: &Meshes) -> Result<TriMesh, MeshFault> {
     let around = subdivision.around.clamp(3, MOST_SEGMENTS);
-    let flat = subdivision.flat.clamp(1, MOST_SEGMENTS);
+    let flat = subdivision.flat.clamp(1, MOST_FLAT_SEGMENTS);
     let plain = match &shape.geometry {
         Geometry::Box { size } => cuboid::cuboid(*size, shape.finish.fillet, segments_of_arc(around, 0.25), flat),
         Geometry::Pyramid { size } => platonic::pyramid(*size),
