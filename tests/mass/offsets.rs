@@ -8,9 +8,6 @@ use realnoid::mass::MassProperties;
 use realnoid::math::{Mat3, Vec3};
 use realnoid::shape::Shape;
 
-/// A shape grown by an offset in metres.
-type Grown<'a> = Box<dyn Fn(f64) -> Shape + 'a>;
-
 /// Mass, first and second moments about the origin.
 fn raw(p: &MassProperties) -> (f64, Vec3, Mat3) {
     (p.mass, p.center * p.mass, p.inertia_at_origin())
@@ -52,7 +49,7 @@ proptest! {
         let f = part * 0.1;
         let step = f / 10.0;
         let grown = |e: f64| l.map(|s| s + 2.0 * e);
-        let shapes: [(&str, Grown<'_>); 6] = [
+        let shapes: [(&str, Grown); 6] = [
             ("sphere", Box::new(|e| with(Geometry::Sphere { radius: a + e }, 0.0))),
             ("torus", Box::new(|e| with(Geometry::Torus { ring_radius: a + b, pipe_radius: a * part + e }, 0.0))),
             ("capsule", Box::new(|e| with(
