@@ -1,6 +1,7 @@
 //! Shape + specific gravity, or `<inertial>` → mass properties (B-2, B-3, B-10 … B-12, B-18).
 //!
-//! One file per family of shapes. A solid body is filled; a hollow one (2D dimension) is a wall of the given thickness
+//! One file per family of shapes; `section`, `lathe_solid` and `lathe_surface` take every other round shape by its outline,
+//! `polygons` takes meshes. A solid body is filled; a hollow one (2D dimension) is a wall of the given thickness
 //! on the shape's surface, thin against the shape: mass = density × area × thickness, as the source defines it.
 
 mod capsule;

@@ -36,6 +36,7 @@ pub(super) struct Turned {
 }
 
 impl Section {
+    /// The region that the outline encloses, alone or with the axis.
     pub fn of(lathe: &Lathe) -> Self {
         let steps = steps(&lathe.pieces);
         let mut section = Self { steps, area: 0.0, center: [0.0; 2], spread: [0.0; 3] };
@@ -48,6 +49,7 @@ impl Section {
         section
     }
 
+    /// The same region as its turning about Z weighs it.
     pub fn turned(&self) -> Turned {
         let [rho, z] = self.center;
         // Pappus; then the weight ρ shifts the centre outwards.

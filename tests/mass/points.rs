@@ -42,9 +42,13 @@ impl Moments {
         });
         let measure = (self.measure / other.measure - 1.0).abs();
         let center = (self.center - other.center).component_div(&extent).abs().max();
-        let spread =
-            Mat3::from_fn(|i, j| (self.covariance[(i, j)] - other.covariance[(i, j)]) / (extent[i] * extent[j]));
-        measure.max(center).max(spread.abs().max())
+        // Second moments come out of an inertia tensor, which cannot hold more than rounding of its largest element.
+        let rounding = 8.0 * f64::EPSILON * other.covariance.trace();
+        let spread = Mat3::from_fn(|i, j| {
+            let off = (self.covariance[(i, j)] - other.covariance[(i, j)]).abs() - rounding;
+            off.max(0.0) / (extent[i] * extent[j])
+        });
+        measure.max(center).max(spread.max())
     }
 }
 
