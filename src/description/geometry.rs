@@ -77,7 +77,7 @@ pub enum Geometry {
     Plane { size: [f64; 2] },
     /// Its corners, anticlockwise seen from the outside.
     Triangle { corners: [[f64; 3]; 3] },
-    /// Its corners in order around; two triangles a b c, a c d.
+    /// Its corners in order around, anticlockwise seen from the outside; two triangles, split along a diagonal inside.
     Quad { corners: [[f64; 3]; 4] },
     /// A height field over the XY plane: full extents along X and Y, height of a value of 1.
     Terrain { size: [f64; 3], heights: Heights },

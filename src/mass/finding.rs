@@ -40,6 +40,9 @@ fn body_error((link, body): (&Link, &Body), code: &'static str, message: String,
 pub(super) fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Finding {
     let (code, mend) = match refusal {
         Refusal::Shape(ShapeFault::NoVolume(..)) => ("shape-without-volume", "write a size above 0, in metres"),
+        Refusal::Shape(ShapeFault::Crossing) => {
+            ("quad-crosses-itself", "swap two neighbouring corners, or make two <triangle> of it")
+        }
         Refusal::Shape(_) => ("shape", "correct the fillet, slice or scale"),
         Refusal::File(fault) => bad_file(fault),
         Refusal::NotSolid(fault) => no_solid(fault),

@@ -12,6 +12,9 @@ pub enum ShapeFault {
     /// A fillet wider than the edge's neighbourhood.
     #[error("a fillet of {0} m does not fit on this <{1}>")]
     Fillet(f64, &'static str),
+    /// A quad whose edges cross, or that is folded over.
+    #[error("this <quad> crosses itself or is folded over: its corners must go around it in order")]
+    Crossing,
     /// No length ratio.
     #[error("scale factor {0} deforms nothing into a shape")]
     Scale(f64),

@@ -2,6 +2,7 @@
 
 use super::check::{ShapeFault, check};
 use crate::description::{Finish, Geometry, PlacedShape, Scaling};
+use crate::math::Vec3;
 
 /// A checked shape in its own frame: a primitive with its finish, stretched along its axes.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +41,7 @@ impl Shape {
             return Err(ShapeFault::Scale(bad));
         }
         let geometry = with_ends(geometry, scaling.top, scaling.bottom);
+        let geometry = split_inside(geometry)?;
         check(&geometry, &finish)?;
         let plain = Finish { open: finish.open, ..Finish::default() } == finish;
         let taken = plain.then(|| scaled(&geometry, scaling.factors)).flatten();
@@ -77,6 +79,19 @@ fn with_ends(geometry: Geometry, top: f64, bottom: f64) -> Geometry {
         }
         other => other,
     }
+}
+
+/// A quad that its first diagonal does not split into two triangles of the same side starts at its second corner: the
+/// corner between them is bent inwards.
+fn split_inside(geometry: Geometry) -> Result<Geometry, ShapeFault> {
+    let Geometry::Quad { corners } = geometry else { return Ok(geometry) };
+    let along_first = |[a, b, c, d]: [[f64; 3]; 4]| {
+        let [a, b, c, d] = [a, b, c, d].map(Vec3::from);
+        (b - a).cross(&(c - a)).dot(&(c - a).cross(&(d - a))) >= 0.0
+    };
+    let [a, b, c, d] = corners;
+    let splits = [corners, [b, c, d, a]].into_iter().find(|corners| along_first(*corners));
+    splits.map(|corners| Geometry::Quad { corners }).ok_or(ShapeFault::Crossing)
 }
 
 /// The primitive that `geometry` becomes under positive factors, if there is one: sphere → ellipsoid, cylinder →

@@ -3,7 +3,7 @@
 use super::weigh::{WALL, deviation, solid, substance, weigh, weighed};
 use realnoid::description::{Dimension, Finish, Geometry, Scaling, Substance};
 use realnoid::mass::{MassProperties, Method, Refusal, of_shape};
-use realnoid::shape::{Meshes, Shape};
+use realnoid::shape::{Meshes, Shape, ShapeFault};
 use std::f64::consts::{PI, TAU};
 
 fn shape(geometry: Geometry) -> Shape {
@@ -106,4 +106,20 @@ fn what_has_no_mass_is_refused_with_its_reason() {
             assert!(matches!(refusal, Err(Refusal::OutOfRange { .. })), "{refusal:?}");
         }
     }
+}
+
+#[test]
+fn a_quad_with_a_corner_bent_inwards_is_split_inside() {
+    // An arrowhead: the triangle (0,0) (4,0) (2,6) less the triangle (0,0) (4,0) (2,2); areas 12 and 4.
+    let corners = [[0.0, 0.0, 0.0], [2.0, 2.0, 0.0], [4.0, 0.0, 0.0], [2.0, 6.0, 0.0]];
+    for start in 0..4 {
+        let mut turned = corners;
+        turned.rotate_left(start);
+        let shape = Shape::new(Geometry::Quad { corners: turned }).unwrap();
+        let weighed = weighed(&shape, WALL).unwrap();
+        assert!((weighed.volume / 0.001 - 8.0).abs() < 1e-14, "{start}: {}", weighed.volume);
+        assert!((weighed.properties.center.y - (12.0 * 2.0 - 4.0 * 2.0 / 3.0) / 8.0).abs() < 1e-14);
+    }
+    let bow = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    assert_eq!(Shape::new(Geometry::Quad { corners: bow }), Err(ShapeFault::Crossing));
 }

@@ -185,7 +185,10 @@ pub fn triangle(d: &Draw) -> (Geometry, f64) {
 }
 
 pub fn quad(d: &Draw) -> (Geometry, f64) {
-    (Geometry::Quad { corners: corners(d) }, 0.0)
+    // One so warped that no diagonal splits it into two triangles of the same side is laid flat.
+    let warped = Geometry::Quad { corners: corners(d) };
+    let flat = || Geometry::Quad { corners: corners(d).map(|[x, y, _]| [x, y, 0.0]) };
+    (if Shape::new(warped.clone()).is_ok() { warped } else { flat() }, 0.0)
 }
 
 fn corners(d: &Draw) -> [[f64; 3]; 4] {

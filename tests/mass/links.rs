@@ -140,7 +140,7 @@ fn a_mesh_that_must_carry_mass_is_an_error_at_its_line() {
     let mut description = robot(&link("torso", &body(1.0, ""), &mesh));
     let (masses, findings) = link_masses(&description);
     assert_eq!(masses[0].mass, 0.0);
-    assert_eq!((findings[0].severity, findings[0].code), (Severity::Error, "mesh-not-found"));
+    assert_eq!((findings[0].severity, findings[0].code), (Severity::Error, "unknown-package"));
     assert_eq!((findings[0].element.as_str(), findings[0].at.line), ("link 'torso' <mesh>", 6));
     description.links[0].visuals.clear();
     assert_eq!(link_masses(&description).1[0].code, "no-shape-for-mass");
