@@ -1,70 +1,62 @@
 //! What is simulated, for programs.
 
 use super::super::load::Loaded;
-use crate::mass::Method;
+use crate::description::Link;
+use crate::mass::{LinkBody, Method};
 use crate::math::Mat3;
-use crate::model::{AxisKind, AxisSlot, EFFECT_NAMES};
+use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, LinkInfo};
 use crate::monitor::{LinkValues, joint_link_values, link_values};
 use crate::shape::collision_shapes;
 use serde_json::{Value, json};
 
-/// SI units; names and units as `docs/` tells them.
+/// SI units, links in their own frames; `principal_axes[i]` is the axis of `principal_moments[i]`, `shapes` tells how the mass
+/// of each shape was found. `links` are those of the URDF, `joint_links` what each axis moves as one body.
 pub(super) fn json(l: &Loaded) -> Value {
     let m = &l.model;
-    let links: Vec<Value> = l
-        .description
-        .links
-        .iter()
-        .zip(&m.links)
-        .zip(&l.bodies)
-        .zip(link_values(m, &l.bodies))
-        .map(|(((read, link), body), values)| {
-            let mut json = weight(&values);
-            let (source, shapes) = collision_shapes(read);
-            json["name"] = json!(link.name);
-            json["shapes"] = body.methods.iter().map(|m| method(*m)).collect();
-            json["member_of"] = link
-                .membership
-                .as_ref()
-                .map_or(Value::Null, |m| json!({"joint": m.joint, "axis": m.axis, "root": m.root}));
-            json["collision"] = json!({"from": format!("{source:?}").to_lowercase(), "shapes": shapes.len()});
-            json
-        })
-        .collect();
-    let joint_links: Vec<Value> = joint_link_values(m, &l.bodies)
-        .iter()
-        .map(|values| {
-            let mut json = weight(values);
-            json["joint"] = json!(values.membership.as_ref().map(|m| &m.joint));
-            json["axis"] = json!(values.membership.as_ref().map(|m| &m.axis));
-            json["frame"] = json!(values.frame);
-            json["links"] = json!(values.members);
-            json
-        })
-        .collect();
-    let bound = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
-    let axes: Vec<Value> = m
-        .axes
-        .iter()
-        .map(|a| {
-            json!({
-                "name": a.name,
-                "kind": if a.kind == AxisKind::Linear { "linear" } else { "rotary" },
-                "group": if matches!(a.slot, AxisSlot::Euler { .. }) { json!("3dof") } else { Value::Null },
-                "lower": bound(a.lower),
-                "upper": bound(a.upper),
-                "max_torque": bound(a.max_torque),
-                "max_speed": bound(a.max_speed),
-                "damping": a.damping,
-                "friction": a.friction,
-                "mode": format!("{:?}", a.mode).to_lowercase(),
-            })
-        })
-        .collect();
+    let values = link_values(m, &l.bodies);
+    let links = l.description.links.iter().zip(&m.links).zip(l.bodies.iter().zip(&values));
+    let links: Vec<Value> = links.map(|((read, link), (body, values))| link_json(read, link, body, values)).collect();
+    let joint_links: Vec<Value> = joint_link_values(m, &l.bodies).iter().map(joint_link).collect();
     let effects: serde_json::Map<String, Value> =
         EFFECT_NAMES.iter().zip(m.effects.as_array()).map(|(n, on)| ((*n).to_owned(), json!(on))).collect();
     json!({"name": m.name, "mass": m.mass(), "bodies": m.bodies.len() - 1, "velocities": m.nv, "links": links,
-           "joint_links": joint_links, "axes": axes, "effects": effects})
+           "joint_links": joint_links, "axes": m.axes.iter().map(axis).collect::<Vec<_>>(), "effects": effects})
+}
+
+fn link_json(read: &Link, link: &LinkInfo, body: &LinkBody, values: &LinkValues) -> Value {
+    let mut json = weight(values);
+    let (source, shapes) = collision_shapes(read);
+    json["name"] = json!(link.name);
+    json["shapes"] = body.methods.iter().map(|m| method(*m)).collect();
+    let member = link.membership.as_ref().map(|m| json!({"joint": m.joint, "axis": m.axis, "root": m.root}));
+    json["member_of"] = member.unwrap_or(Value::Null);
+    json["collision"] = json!({"from": format!("{source:?}").to_lowercase(), "shapes": shapes.len()});
+    json
+}
+
+fn joint_link(values: &LinkValues) -> Value {
+    let mut json = weight(values);
+    json["joint"] = json!(values.membership.as_ref().map(|m| &m.joint));
+    json["axis"] = json!(values.membership.as_ref().map(|m| &m.axis));
+    json["frame"] = json!(values.frame);
+    json["links"] = json!(values.members);
+    json
+}
+
+fn axis(a: &Axis) -> Value {
+    let bound = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
+    json!({
+        "name": a.name,
+        "kind": if a.kind == AxisKind::Linear { "linear" } else { "rotary" },
+        "group": if matches!(a.slot, AxisSlot::Euler { .. }) { json!("3dof") } else { Value::Null },
+        "lower": bound(a.lower),
+        "upper": bound(a.upper),
+        "max_torque": bound(a.max_torque),
+        "max_speed": bound(a.max_speed),
+        "damping": a.damping,
+        "friction": a.friction,
+        "mode": format!("{:?}", a.mode).to_lowercase(),
+    })
 }
 
 /// Mass properties of one link (B-10, J-19).
