@@ -105,7 +105,8 @@ pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, 
         if findings.iter().any(|f| f.severity == Severity::Error) {
             return None;
         }
-        let model = Model::build(&d, &properties(&bodies), base, base_pose);
+        let simulated: Vec<MassProperties> = bodies.iter().map(|body| body.simulated).collect();
+        let model = Model::build(&d, &simulated, base, base_pose);
         let singular = singular_axes(&model);
         findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
         singular.is_empty().then_some((d, bodies, model))

@@ -3,7 +3,7 @@
 use super::MassProperties;
 use super::of_shape::Refusal;
 use crate::description::{Body, Finding, Link, PlacedShape, Severity};
-use crate::shape::{MeshFault, ShapeFault, SolidFault};
+use crate::shape::{COUNTS_TWICE, MeshFault, ShapeFault, SolidFault};
 
 pub(super) fn static_in_chain(link: &Link, body: &Body) -> Finding {
     body_error(
@@ -39,7 +39,9 @@ fn body_error((link, body): (&Link, &Body), code: &'static str, message: String,
 
 pub(super) fn refused(link: &Link, shape: &PlacedShape, refusal: &Refusal) -> Finding {
     let (code, mend) = match refusal {
-        Refusal::Shape(ShapeFault::NoVolume(..)) => ("shape-without-volume", "write a size above 0, in metres"),
+        Refusal::Shape(ShapeFault::NoVolume(..)) => {
+            ("shape-without-volume", "correct the size that the message names, in metres")
+        }
         Refusal::Shape(ShapeFault::Crossing) => {
             ("quad-crosses-itself", "swap two neighbouring corners, or make two <triangle> of it")
         }
@@ -136,11 +138,11 @@ pub(super) fn difference(link: &Link, body: &Body, tag: &MassProperties, written
     })
 }
 
-/// What was mended in a mesh before its mass was computed.
+/// What was mended in a mesh before its mass was computed, or has to be known about it.
 pub(super) fn repaired(link: &Link, shape: &PlacedShape, repair: &str) -> Finding {
     Finding {
         severity: Severity::Warning,
-        code: "mesh-repaired",
+        code: if repair.contains(COUNTS_TWICE) { "mesh-overlaps-itself" } else { "mesh-repaired" },
         message: repair.to_owned(),
         element: format!("link '{}' <{}>", link.name, shape.geometry.kind()),
         at: shape.at,
@@ -148,9 +150,55 @@ pub(super) fn repaired(link: &Link, shape: &PlacedShape, repair: &str) -> Findin
     }
 }
 
-/// A threshold that leaves a body without inertia about some axis.
-pub(super) fn rounded_away(link: &Link, body: &Body, mass: &MassProperties, exponent: i32) -> Option<Finding> {
-    let lost = (0..3).any(|i| mass.inertia[(i, i)] == 0.0);
-    let message = format!("zero_exponent = {exponent} rounds a moment of inertia of this link to zero");
-    lost.then(|| body_error((link, body), "inertia-rounded-away", message, "write a smaller exponent"))
+/// A threshold that leaves a tensor that no body has.
+pub(super) fn rounded_away(link: &Link, body: &Body, exponent: i32) -> Finding {
+    let message =
+        format!("zero_exponent = {exponent} takes so much from the inertia tensor that no body has such a one");
+    body_error((link, body), "inertia-rounded-away", message, "write a smaller exponent")
+}
+
+/// Numbers too large or too small for arithmetic.
+pub(super) fn out_of_range(link: &Link, body: &Body) -> Finding {
+    let message = "the mass, centre or inertia of this link is too large a number to calculate with".to_owned();
+    body_error((link, body), "mass-out-of-range", message, "write sizes and places in metres, and a smaller l_scale")
+}
+
+/// A wall that does not fit into its shape.
+pub(super) fn thick_wall(link: &Link, shape: &PlacedShape, wall: f64, inside: f64) -> Finding {
+    Finding {
+        severity: Severity::Warning,
+        code: "wall-thicker-than-shape",
+        message: format!("the wall has {wall:.3e} m³ on its surface, the whole shape only {inside:.3e} m³"),
+        element: format!("link '{}' <{}>", link.name, shape.geometry.kind()),
+        at: shape.at,
+        mend: "write a smaller thickness, or dimension=\"3d\"".into(),
+    }
+}
+
+/// A tensor that no body has, from shapes: a fault of ours.
+pub(super) fn impossible(link: &Link, body: &Body) -> Finding {
+    let message = "the inertia computed from these shapes is that of no body".to_owned();
+    body_error(
+        (link, body),
+        "inertia-impossible",
+        message,
+        "this is a fault of realnoid: please report it together with the file",
+    )
+}
+
+/// An L scale beside another one on the same rigid whole.
+pub(super) fn idle_l_scale(link: &Link) -> Option<Finding> {
+    let body = link.body.as_ref()?;
+    Some(Finding {
+        severity: Severity::Warning,
+        code: "l-scale-ignored",
+        message: format!(
+            "l_scale = {} has no effect: fixed joints make this link one body with another one nearer to the root, and \
+             its l_scale counts",
+            body.l_scale
+        ),
+        element: format!("link '{}' <body>", link.name),
+        at: body.at,
+        mend: "write the l_scale on the link that the moving joint carries".into(),
+    })
 }

@@ -14,6 +14,7 @@ mod formulas;
 mod frustum;
 mod inertials;
 mod jacobi;
+mod l_scale;
 mod lathe_solid;
 mod lathe_surface;
 mod links;

@@ -32,7 +32,7 @@ pub enum Refusal {
     #[error("this <{0}> is closed but encloses no volume: what its triangles enclose cancels out")]
     NoVolume(&'static str),
     /// Numbers too large or too small for arithmetic.
-    #[error("the mass of this <{kind}> is no number to calculate with: volume {volume} m³, mass {mass} kg")]
+    #[error("the mass of this <{kind}> is no number to calculate with: volume {volume:e} m³, mass {mass:e} kg")]
     OutOfRange {
         /// Element name.
         kind: &'static str,
@@ -91,10 +91,12 @@ pub fn of_shape(shape: &Shape, substance: &Substance, meshes: &Meshes) -> Result
     let thickness = wall.unwrap_or(1.0);
     let volume = found.moments.measure * thickness;
     let properties = found.moments.mass_properties(substance.specific_gravity * WATER_DENSITY * thickness);
-    if found.moments.measure == 0.0 && matches!(shape.geometry, Geometry::Triangle { .. } | Geometry::Quad { .. }) {
+    if found.moments.measure <= 1e-13 * found.moments.covariance.trace()
+        && matches!(shape.geometry, Geometry::Triangle { .. } | Geometry::Quad { .. })
+    {
         return Err(Refusal::NoArea(kind));
     }
-    if !(volume > 0.0 && volume.is_finite() && is_finite(&properties)) {
+    if !(volume > 0.0 && volume.is_finite() && properties.is_finite()) {
         return Err(Refusal::OutOfRange { kind, volume, mass: properties.mass });
     }
     Ok(ShapeMass { volume, properties, method: found.method, repairs: found.repairs })
@@ -125,9 +127,4 @@ fn by_polygons(
         false => polygons::surface(&mesh).ok_or(Refusal::NoArea(kind))?,
     };
     Ok(Found { moments, method, repairs })
-}
-
-fn is_finite(properties: &MassProperties) -> bool {
-    let all = properties.inertia.iter().chain(properties.center.iter()).chain([&properties.mass]);
-    all.copied().all(f64::is_finite)
 }

@@ -25,10 +25,11 @@ pub(super) fn surface(mesh: &TriMesh) -> Option<Moments> {
 /// a mesh of no volume cancel down to it.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Middle of the bounds.
+/// Middle of the bounds of the triangles.
 fn middle(mesh: &TriMesh) -> Option<Vec3> {
-    let first = *mesh.vertices.first()?;
-    let (low, high) = mesh.vertices.iter().fold((first, first), |(l, h), v| (l.inf(v), h.sup(v)));
+    let mut used = mesh.triangles.iter().flatten().map(|i| mesh.vertices[*i as usize]);
+    let first = used.next()?;
+    let (low, high) = used.fold((first, first), |(l, h), v| (l.inf(&v), h.sup(&v)));
     Some(low / 2.0 + high / 2.0)
 }
 

@@ -60,9 +60,18 @@ impl MassProperties {
         super::jacobi::principal(&self.inertia)
     }
 
-    /// B-18: inertia with every distance from the centre of mass multiplied by `l_scale`.
-    pub fn l_scaled(&self, l_scale: f64) -> Self {
-        Self { inertia: self.inertia * (l_scale * l_scale), ..*self }
+    /// Could a body have this inertia: no negative moment, none greater than the sum of the other two? 1e-9 of the
+    /// greatest aside, which is room for rounding: the least moment of a needle drowns in it.
+    pub fn is_physical(&self) -> bool {
+        let m = self.principal().moments;
+        let rounding = 1e-9 * m[2];
+        self.is_finite() && m[0] >= -rounding && m[0] + m[1] >= m[2] - rounding
+    }
+
+    /// Are all its numbers finite?
+    pub fn is_finite(&self) -> bool {
+        let mut all = self.inertia.iter().chain(self.center.iter()).chain(std::iter::once(&self.mass));
+        all.all(|x| x.is_finite())
     }
 
     /// B-10: elements of the inertia tensor below 10^`exponent` kg·m² become 0.

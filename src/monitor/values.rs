@@ -13,12 +13,14 @@ pub struct LinkValues {
     pub membership: Option<Membership>,
     /// URDF links that make it up, those without mass left out.
     pub members: Vec<String>,
+    /// All URDF links of it, index and frame in the frame of `frame`: where collision shapes stand (J-8).
+    pub seats: Vec<(usize, Pose)>,
     /// Of the material, m³; `None` if some mass is only stated.
     pub volume: Option<f64>,
     /// In the frame of `frame`.
     pub properties: MassProperties,
-    /// B-18 factor; `None` if the members have different ones.
-    pub l_scale: Option<f64>,
+    /// B-18 factor, not in `properties`: of a whole, that of the body nearest the root.
+    pub l_scale: f64,
     /// B-10: the power of ten below which tensor elements are shown as 0.
     pub zero_exponent: Option<i32>,
 }
@@ -42,14 +44,15 @@ impl LinkValues {
 
 /// The values of each URDF link, in the order of the model.
 pub fn link_values(model: &Model, bodies: &[LinkBody]) -> Vec<LinkValues> {
-    let links = model.links.iter().zip(bodies);
-    let values = links.map(|(link, body)| LinkValues {
+    let links = model.links.iter().zip(bodies).enumerate();
+    let values = links.map(|(i, (link, body))| LinkValues {
         frame: link.name.clone(),
         membership: link.membership.clone(),
         members: vec![link.name.clone()],
+        seats: vec![(i, Pose::identity())],
         volume: body.volume,
         properties: body.properties,
-        l_scale: Some(body.l_scale),
+        l_scale: body.l_scale,
         zero_exponent: body.zero_exponent,
     });
     values.collect()
@@ -70,18 +73,19 @@ fn joint_link(model: &Model, bodies: &[LinkBody], body: usize) -> Option<LinkVal
         .collect();
     let is_root = |i: usize| i == model.root_link || model.links[i].membership.as_ref().is_some_and(|m| m.root);
     let &(root, root_pose) = members.iter().find(|(i, _)| is_root(*i)).or(members.first())?;
-    let heavy: Vec<&(usize, Pose)> = members.iter().filter(|(i, _)| bodies[*i].properties.mass > 0.0).collect();
-    let parts: Vec<MassProperties> =
-        heavy.iter().map(|(i, pose)| bodies[*i].properties.placed(&root_pose.inv_mul(pose))).collect();
-    let scales: Vec<f64> = heavy.iter().map(|(i, _)| bodies[*i].l_scale).collect();
-    let first = *scales.first()?;
+    let seats: Vec<(usize, Pose)> = members.iter().map(|(i, pose)| (*i, root_pose.inv_mul(pose))).collect();
+    let heavy: Vec<&(usize, Pose)> = seats.iter().filter(|(i, _)| bodies[*i].properties.mass > 0.0).collect();
+    let parts: Vec<MassProperties> = heavy.iter().map(|(i, pose)| bodies[*i].properties.placed(pose)).collect();
+    let depth = |i: usize| std::iter::successors(Some(i), |i| model.links[*i].parent).count();
+    let nearest = heavy.iter().map(|(i, _)| *i).min_by_key(|i| depth(*i))?;
     Some(LinkValues {
         frame: model.links[root].name.clone(),
         membership: model.links[root].membership.clone(),
         members: heavy.iter().map(|(i, _)| model.links[*i].name.clone()).collect(),
         volume: heavy.iter().map(|(i, _)| bodies[*i].volume).sum(),
         properties: MassProperties::sum(&parts),
-        l_scale: scales.iter().all(|s| *s == first).then_some(first),
+        seats: seats.clone(),
+        l_scale: bodies[nearest].l_scale,
         zero_exponent: heavy.iter().filter_map(|(i, _)| bodies[*i].zero_exponent).min(),
     })
 }

@@ -17,7 +17,7 @@ pub use collision::{CollisionSource, collision_shapes};
 pub use form::Shape;
 pub use meshes::{HeightGrid, LONGEST_FILE, MeshFault, Meshes, SearchPaths};
 pub use outline::{Lathe, Piece, lathe};
-pub use solid::{SolidFault, closed_solid};
+pub use solid::{COUNTS_TWICE, SolidFault, closed_solid};
 pub use support::Support;
 pub use tessellate::tessellate;
 pub use trimesh::TriMesh;

@@ -183,7 +183,9 @@ fn rounding(corners: &[Corner], i: usize) -> Option<Rounding> {
     let before = direction(corner.at, corners[i - 1].at)?;
     let after = direction(corner.at, corners[i + 1].at)?;
     let cosine = before[0] * after[0] + before[1] * after[1];
-    let half = cosine.clamp(-1.0, 1.0).acos() / 2.0;
+    let sine = before[0] * after[1] - before[1] * after[0];
+    // Not by the cosine alone, which says nothing about the angle of a flat cone's rim.
+    let half = sine.abs().atan2(cosine) / 2.0;
     Some(Rounding { before, after, half, leave: corner.fillet / half.tan() })
 }
 

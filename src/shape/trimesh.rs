@@ -28,6 +28,21 @@ impl TriMesh {
         self
     }
 
+    /// Without the vertices that no triangle uses: a stray one would move the middle and the bounds of the mesh.
+    pub fn without_strays(mut self) -> Self {
+        let mut used = vec![false; self.vertices.len()];
+        self.triangles.iter().flatten().for_each(|i| used[*i as usize] = true);
+        if used.iter().all(|u| *u) {
+            return self;
+        }
+        let mut kept = 0;
+        let index: Vec<u32> = used.iter().map(|u| (kept, kept += u32::from(*u)).0).collect();
+        self.triangles.iter_mut().flatten().for_each(|i| *i = index[*i as usize]);
+        let mut used = used.into_iter();
+        self.vertices.retain(|_| used.next() == Some(true));
+        self
+    }
+
     /// Turns every triangle inside out.
     pub fn flip(&mut self) {
         self.triangles.iter_mut().for_each(|t| t.swap(1, 2));

@@ -132,6 +132,8 @@ fn finish_scale_and_substance_are_read() {
         <shape segments="8" limit_subdivisions="true"><box size="1 1 1"/></shape><shape><torus ring_radius="2" pipe_radius="1"/></shape>"#;
     let body = shape(r#"polygonise="true" segments="24" flat_segments="4" zero_exponent="-9""#, polygons);
     let told: Vec<_> = body.shapes.iter().map(|s| body.substance_of(s).polygonise).collect();
+    let later = shape(r#"segments="100""#, r#"<shape polygonise="true"><sphere radius="1"/></shape>"#);
+    assert_eq!(later.substance_of(&later.shapes[0]).polygonise.map(|s| s.around), Some(100), "the body's segments");
     let into = |around, flat| Some(Subdivision { around, flat });
     assert_eq!(told, [into(24, 4), None, into(8, 1), None]);
     assert_eq!(body.zero_exponent, Some(-9));
@@ -157,6 +159,8 @@ fn what_a_shape_does_not_take_is_told() {
     only("<shape polygonise='true' dimension='2d' thickness='0.1'><sphere radius='1'/></shape>", "polygonise-ignored");
     only("<shape segments='2001'><sphere radius='1'/></shape>", "out-of-range");
     only("<shape flat_segments='1.5'><sphere radius='1'/></shape>", "out-of-range");
+    only("<shape segments='20'><sphere radius='1'/></shape>", "segments-ignored");
+    only("<shape scale='1 1 1'><mesh filename='a.stl' scale='1 -1 1'/></shape>", "mirrored");
     only("<shape segments='2'><sphere radius='1'/></shape>", "out-of-range");
     only("<shape><cylinder radius='1' length='1' slice='1 0'/></shape>", "slice");
     only("<shape><cylinder radius='1' length='1' slice='0 7'/></shape>", "slice");

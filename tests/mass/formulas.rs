@@ -15,6 +15,7 @@ const WALL: f64 = 0.003;
 fn ours(shape: &Shape, dimension: Dimension) -> Moments {
     let substance = Substance { specific_gravity: DENSITY / 1000.0, dimension, polygonise: None };
     let body = of_shape(shape, &substance, &Meshes::default()).unwrap();
+    assert!(body.properties.is_physical(), "{:?}", body.properties.principal());
     let thickness = if dimension == Dimension::Solid { 1.0 } else { WALL };
     assert!((body.volume * DENSITY / body.properties.mass - 1.0).abs() < 1e-14);
     Moments::from_mass(&body.properties, DENSITY * thickness)

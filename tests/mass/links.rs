@@ -190,3 +190,19 @@ fn urdf_origins_turn_about_fixed_axes_roll_first() {
     let y = x * nalgebra::Point3::new(0.0, 1.0, 0.0);
     assert!((y.coords - Vector3::new(1.0, 0.0, 1.0)).norm() < 1e-15);
 }
+
+#[test]
+fn what_overflows_or_does_not_fit_is_told() {
+    let told = |tags: &str| link_masses(&robot(&link("only", tags, ""))).1;
+    let far = r#"<shape><origin xyz="1e200 0 0"/><box size="1 1 1"/></shape><shape><box size="1 1 1"/></shape>"#;
+    assert_eq!(told(&body(1.0, far))[0].code, "mass-out-of-range");
+    let scaled = body(1.0, &format!("<shape>{CUBE}</shape>")).replace("<body", "<body l_scale=\"1e200\"");
+    assert_eq!(told(&scaled)[0].code, "mass-out-of-range");
+    let wall = body(1.0, "<shape><sphere radius=\"0.1\"/></shape>")
+        .replace("<body", "<body dimension=\"2d\" thickness=\"0.2\"");
+    assert_eq!((told(&wall)[0].code, told(&wall)[0].severity), ("wall-thicker-than-shape", Severity::Warning));
+    let proxy = r#"<proxy><torus ring_radius="0.1" pipe_radius="0.2"/></proxy>"#;
+    assert_eq!(told(proxy)[0].code, "shape-without-volume");
+    let needle = r#"<shape><origin rpy="0.3 0.4 0.5"/><cylinder radius="1e-4" length="1e6"/></shape>"#;
+    assert!(told(&body(1.0, needle)).is_empty(), "a needle's least moment may drown in rounding");
+}

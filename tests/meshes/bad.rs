@@ -113,7 +113,7 @@ fn a_file_beyond_the_limit_is_not_opened() {
     says(&fault.to_string(), &["a.stl", "536870913 bytes", "512 MiB"]);
 }
 
-/// A grid over a square, folded around a box: 1 000 000 triangles, 50 MB, are read, judged and found open or closed.
+/// A bumpy sheet of 1 000 000 triangles, 50 MB, is read, judged and found open.
 #[test]
 fn fifty_megabytes_are_read() {
     const N: usize = 1_000_000;

@@ -120,3 +120,25 @@ fn threads_share_one_reading() {
     });
     assert!(read.iter().all(|mesh| std::sync::Arc::ptr_eq(mesh, &read[0])));
 }
+
+/// A corner that no face uses moves neither the middle about which the mesh is integrated, nor its bounds.
+#[test]
+fn stray_corners_are_left_out() {
+    let text = obj(&cuboid(SIZE));
+    is_the_box(&read("a.obj", format!("{text}\nv 1e6 1e6 1e6\n")).unwrap());
+}
+
+#[test]
+fn a_backslash_in_a_comment_joins_no_lines_and_one_at_the_end_loses_none() {
+    let text = obj(&cuboid(SIZE));
+    is_the_box(&read("a.obj", format!("# C:\\meshes\\\n{text}")).unwrap());
+    is_the_box(&read("a.obj", format!("{}\\", text.trim_end())).unwrap());
+}
+
+/// 80 000 corners on one line: linear in their number, or the test would never end.
+#[test]
+fn a_long_flat_face_is_read() {
+    let corners: String = (0..80_000).map(|i| format!("v {i} 0 0\n")).collect();
+    let face: String = (1..=80_000).map(|i| format!(" {i}")).collect();
+    assert_eq!(read("a.obj", format!("{corners}f{face}\n")).unwrap().triangles.len(), 79_998);
+}

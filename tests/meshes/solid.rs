@@ -2,7 +2,7 @@
 
 use super::support::{cuboid, inside_out, moved, together, volume};
 use realnoid::math::Vec3;
-use realnoid::shape::{SolidFault, TriMesh, closed_solid};
+use realnoid::shape::{COUNTS_TWICE, SolidFault, TriMesh, closed_solid};
 
 fn unit() -> TriMesh {
     cuboid([1.0; 3])
@@ -93,7 +93,7 @@ fn parts_that_cut_into_each_other_are_told() {
     let (volume, told) = solid(cross);
     assert!(
         (volume - 3.75).abs() < 1e-12 && told.is_empty(),
-        "boxes that reach past each other are not compared: {told:?}"
+        "what crosses with its edges alone is not found: {told:?}"
     );
     let tooth = moved(cuboid([1.0, 0.5, 0.6]), [0.2, 0.2, 0.2]);
     let mut wedge = plate;
@@ -193,4 +193,14 @@ fn thin_plates_and_far_places_are_solids() {
     assert_eq!(solid(cuboid([1.0, 1.0, 1e-9])), (1e-9, vec![]));
     let (mesh, told) = closed_solid(moved(cuboid([1.0; 3]), [1e6, -1e6, 1e6])).unwrap();
     assert!(told.is_empty() && mesh.triangles.len() == 12);
+}
+
+#[test]
+fn parts_that_overlap_side_by_side_are_told_and_touching_ones_are_not() {
+    let pair = |by: [f64; 3]| solid(together(&[unit(), moved(unit(), by)]));
+    let (volume, told) = pair([0.5, 0.5, 0.5]);
+    assert!((volume - 2.0).abs() < 1e-12 && told.len() == 1 && told[0].contains(COUNTS_TWICE), "{told:?}");
+    for apart in [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [1.5, 0.0, 0.0]] {
+        assert_eq!(pair(apart), (2.0, vec![]), "{apart:?}");
+    }
 }

@@ -68,7 +68,7 @@ def turn(axis, angle):
 
 
 def test_bodies_of_a_link_add_up_by_their_own_masses(arm):
-    """J-6 and X-3, by a second computation; then L scale and rounding."""
+    """J-6 and X-3, by a second computation; then rounding. The L scale is told beside the true values."""
     cover = links(arm)["cover"]
     radius, length = 0.05, 0.2
     tube = 1000 * numpy.pi * radius**2 * length
@@ -79,7 +79,6 @@ def test_bodies_of_a_link_add_up_by_their_own_masses(arm):
     ball_inertia = numpy.eye(3) * 2 / 3 * ball * 0.04**2
     mass, center = tube + ball, numpy.array([0, 0, 0.1]) * tube / (tube + ball)
     inertia = shifted(tube_inertia, tube, numpy.array([0, 0, 0.1]) - center) + shifted(ball_inertia, ball, center)
-    inertia *= 2**2
     inertia[abs(inertia) < 1e-4] = 0
     assert cover["mass"] == pytest.approx(mass, rel=1e-14)
     assert cover["volume"] == pytest.approx(tube / 1000 + ball / 8000, rel=1e-14)
@@ -112,7 +111,7 @@ def test_what_a_joint_moves_is_one_body(arm):
     numpy.testing.assert_allclose(both["principal_moments"], numpy.linalg.eigvalsh(inertia), rtol=1e-12)
     axes = numpy.array(both["principal_axes"]).T
     numpy.testing.assert_allclose(axes @ numpy.diag(both["principal_moments"]) @ axes.T, inertia, atol=1e-14)
-    assert both["l_scale"] is None, "the two have different ones"
+    assert both["l_scale"] == 1, "that of the body nearest the root"
 
 
 def test_every_body_knows_the_joint_whose_link_it_belongs_to(arm):
@@ -123,6 +122,41 @@ def test_every_body_knows_the_joint_whose_link_it_belongs_to(arm):
     assert member["cover"] == {"joint": "shoulder", "axis": "shoulder", "root": False}
     hip = {name: link["member_of"] for name, link in links(ORIGIN).items()}["left_thigh"]
     assert hip == {"joint": "left_hip", "axis": "left_hip_roll", "root": True}, "a group moves it"
+
+
+def test_the_l_scale_of_the_body_nearest_the_root_holds_for_all_that_the_joint_moves(tmp_path):
+    """B-18: what is simulated has L² times the inertia about the centre of mass of the whole; what is shown has not."""
+
+    def angular_acceleration(upper, cover):
+        path = tmp_path / "scaled.urdf"
+        text = ARM.format(proxy="").replace('zero_exponent="-4"', "").replace('l_scale="2"', f'l_scale="{cover}"')
+        text = text.replace('<body specific_gravity="2">', f'<body specific_gravity="2" l_scale="{upper}">')
+        # Without the forearm, one hinge is left.
+        text = text.replace('name="elbow" type="continuous"', 'name="elbow" type="fixed"').replace('mass value="3"', 'mass value="0"')
+        path.write_text(text.replace('ixx="1"', 'ixx="0"').replace('iyy="1"', 'iyy="0"').replace('izz="1"', 'izz="0"'))
+        state = json.dumps({"position": [0], "velocity": [0], "effort": [1]})
+        command = [BINARY, "evaluate", path, "--gravity", "0,0,0"]
+        done = subprocess.run(command, input=state, capture_output=True, text=True, check=True)
+        return json.loads(done.stdout)["acceleration"][0], as_json(path)["joint_links"][0]
+
+    plain, values = angular_acceleration(1, 1)
+    about_center, at_origin = values["inertia"]["iyy"], values["inertia_at_origin"]["iyy"]
+    assert plain == pytest.approx(1 / at_origin, rel=1e-12)
+    scaled, same = angular_acceleration(3, 1)
+    assert scaled == pytest.approx(1 / (at_origin + 8 * about_center), rel=1e-12)
+    assert {k: v for k, v in same.items() if k != "l_scale"} == {k: v for k, v in values.items() if k != "l_scale"}
+    assert (values["l_scale"], same["l_scale"]) == (1, 3)
+    assert angular_acceleration(1, 5)[0] == plain, "only the body nearest the root counts"
+    report = subprocess.run([BINARY, "check", tmp_path / "scaled.urdf"], capture_output=True, text=True).stdout
+    assert "l-scale-ignored" in report and "'cover'" in report
+
+
+def test_collision_shapes_stand_in_the_frame_of_the_joints_link(arm):
+    """J-8."""
+    [box, ball] = as_json(arm)["joint_links"][0]["collision"]
+    assert (box["kind"], box["position"], box["orientation"]) == ("box", [0, 0, 0], [0, 0, 0, 1])
+    assert ball["kind"] == "sphere" and ball["position"] == pytest.approx([0, 0, 0.5])
+    assert ball["orientation"] == pytest.approx([0, numpy.sin(0.2), 0, numpy.cos(0.2)])
 
 
 def test_proxies_stand_for_collision_and_collision_for_the_body(tmp_path, arm):
@@ -144,7 +178,7 @@ def blocks(text):
 def test_full_values_have_the_form_of_the_source(arm):
     """Table 6-9: one digit and 15 decimals with a signed exponent; m and cm, kg and g; the centre in the system unit."""
     told = blocks(inspect(arm, "--full"))
-    assert list(told) == ["joint shoulder: link upper, with cover", "joint elbow: link stated"]
+    assert list(told) == ["joint shoulder: link upper, with cover", "part upper", "part cover", "joint elbow: link stated"]
     text, values = told["joint shoulder: link upper, with cover"], as_json(arm)["joint_links"][0]
     rows = {line[2:22].strip(): line[23:].split() for line in text.split("\n")[1:]}
     assert re.search(rf"volume +{EXPONENT} m³   {EXPONENT} cm³", text) and re.search(rf"mass +{EXPONENT} kg   {EXPONENT} g", text)
@@ -156,7 +190,7 @@ def test_full_values_have_the_form_of_the_source(arm):
     assert [float(x) for x in rows["principal moments"][:3]] == pytest.approx(values["principal_moments"], rel=digits)
     first = values["inertia_at_origin"]
     assert [float(x) for x in rows["inertia at origin"][:3]] == pytest.approx([first["ixx"], first["ixy"], first["ixz"]], rel=digits)
-    assert rows["L scale"] == ["several"]
+    assert rows["L scale"] == ["1"]
     assert len(re.findall(EXPONENT, text)) == 4 + 9 + 9 + 3
     assert "unknown" in told["joint elbow: link stated"]
 

@@ -35,7 +35,10 @@ pub(super) fn parts(drawing: &Drawing) -> (Vec<Part>, Vec<String>) {
 
 fn part(placed: &PlacedShape, x_wl: &Pose, meshes: &Meshes) -> Result<Part, String> {
     let shape = Shape::of(placed).map_err(|fault| fault.to_string())?;
-    let subdivision = placed.substance.and_then(|s| s.polygonise).unwrap_or(SUBDIVISION);
+    let polygons = placed.substance.filter(|s| placed.may_be_polygonised(s.dimension)).and_then(|s| s.polygonise);
+    // More segments than these, and segments of straight lengths, would not be seen.
+    let subdivision =
+        polygons.map_or(SUBDIVISION, |s| Subdivision { around: s.around.min(4 * SUBDIVISION.around), flat: 1 });
     let mesh = tessellate(&shape, subdivision, meshes).map_err(|fault| fault.to_string())?;
     let mesh = mesh.placed(&(x_wl * placed.origin.pose()));
     if !mesh.vertices.iter().flatten().all(|x| x.is_finite()) {

@@ -1,9 +1,9 @@
 //! What is simulated, for programs.
 
 use super::super::load::Loaded;
-use crate::description::Link;
+use crate::description::{Description, Link, PlacedShape};
 use crate::mass::{LinkBody, Method};
-use crate::math::Mat3;
+use crate::math::{Mat3, Pose};
 use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, LinkInfo};
 use crate::monitor::{LinkValues, joint_link_values, link_values};
 use crate::shape::collision_shapes;
@@ -16,7 +16,8 @@ pub(super) fn json(l: &Loaded) -> Value {
     let values = link_values(m, &l.bodies);
     let links = l.description.links.iter().zip(&m.links).zip(l.bodies.iter().zip(&values));
     let links: Vec<Value> = links.map(|((read, link), (body, values))| link_json(read, link, body, values)).collect();
-    let joint_links: Vec<Value> = joint_link_values(m, &l.bodies).iter().map(joint_link).collect();
+    let joint_links: Vec<Value> =
+        joint_link_values(m, &l.bodies).iter().map(|v| joint_link(&l.description, v)).collect();
     let effects: serde_json::Map<String, Value> =
         EFFECT_NAMES.iter().zip(m.effects.as_array()).map(|(n, on)| ((*n).to_owned(), json!(on))).collect();
     json!({"name": m.name, "mass": m.mass(), "bodies": m.bodies.len() - 1, "velocities": m.nv, "links": links,
@@ -34,13 +35,27 @@ fn link_json(read: &Link, link: &LinkInfo, body: &LinkBody, values: &LinkValues)
     json
 }
 
-fn joint_link(values: &LinkValues) -> Value {
+fn joint_link(description: &Description, values: &LinkValues) -> Value {
     let mut json = weight(values);
     json["joint"] = json!(values.membership.as_ref().map(|m| &m.joint));
     json["axis"] = json!(values.membership.as_ref().map(|m| &m.axis));
     json["frame"] = json!(values.frame);
     json["links"] = json!(values.members);
+    let seats = values.seats.iter().map(|(i, pose)| (&description.links[*i], pose));
+    json["collision"] =
+        seats.flat_map(|(link, pose)| collision_shapes(link).1.iter().map(move |s| placed(s, pose))).collect();
     json
+}
+
+/// A shape that collides, in the frame of the joint's link (J-8).
+fn placed(shape: &PlacedShape, x_lk: &Pose) -> Value {
+    let pose = x_lk * shape.origin.pose();
+    let q = pose.rotation.coords;
+    json!({
+        "kind": shape.geometry.kind(),
+        "position": pose.translation.vector.as_slice(),
+        "orientation": [q.x, q.y, q.z, q.w],
+    })
 }
 
 fn axis(a: &Axis) -> Value {

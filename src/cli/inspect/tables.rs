@@ -54,7 +54,7 @@ fn link_row(frame: &LinkFrame, v: &LinkValues, unit: Unit) -> String {
         p[0],
         p[1],
         p[2],
-        v.l_scale.unwrap_or(1.0)
+        v.l_scale
     )
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::load::Loaded;
 use crate::math::{Mat3, Vec3};
-use crate::monitor::{LinkValues, joint_link_values};
+use crate::monitor::{LinkValues, joint_link_values, link_values};
 use std::fmt::Write;
 
 /// The system unit of length (G-9).
@@ -32,12 +32,21 @@ impl Unit {
     }
 }
 
-/// One block per joint: all bodies that it moves as one (J-6).
+/// One block per joint: all bodies that it moves as one (J-6); then one for each of them, if there are several.
 pub(super) fn full(l: &Loaded, unit: Unit) -> String {
-    joint_link_values(&l.model, &l.bodies).iter().map(|values| block(values, unit)).collect::<Vec<_>>().join("\n")
+    let single = link_values(&l.model, &l.bodies);
+    let mut blocks = vec![];
+    for whole in joint_link_values(&l.model, &l.bodies) {
+        blocks.push(block(&title(&whole), &whole, unit));
+        let parts = whole.seats.iter().map(|(i, _)| &single[*i]).filter(|v| v.properties.mass > 0.0);
+        if whole.members.len() > 1 {
+            blocks.extend(parts.map(|v| block(&format!("part {}", v.frame), v, unit)));
+        }
+    }
+    blocks.join("\n")
 }
 
-fn block(v: &LinkValues, unit: Unit) -> String {
+fn block(title: &str, v: &LinkValues, unit: Unit) -> String {
     let p = &v.properties;
     let beside = unit.beside_metre();
     let volume = v
@@ -56,8 +65,8 @@ fn block(v: &LinkValues, unit: Unit) -> String {
     matrix(&mut line, "inertia at origin", &v.inertia_at_origin());
     matrix(&mut line, "inertia at centre", &p.inertia);
     line("principal moments", &format!("{} kg·m²", row(&v.principal_moments())));
-    line("L scale", &v.l_scale.map_or("several".into(), |s| s.to_string()));
-    format!("{}\n{text}", title(v))
+    line("L scale", &v.l_scale.to_string());
+    format!("{title}\n{text}")
 }
 
 fn title(v: &LinkValues) -> String {

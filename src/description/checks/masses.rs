@@ -2,7 +2,7 @@
 
 use super::super::finding::{Finding, Place};
 use super::super::report::Report;
-use super::super::{Description, JointKind, Link};
+use super::super::{Description, JointKind, Link, PlacedShape, shapes};
 use super::tree::Tree;
 use super::{place_of_joint, place_of_link};
 
@@ -19,6 +19,14 @@ pub(super) fn check(d: &Description, tree: Option<&Tree>, report: &mut Report) {
 
 fn check_body(link: &Link, report: &mut Report) {
     let Some(body) = &link.body else { return };
+    let exact = |v: &&PlacedShape| !v.may_be_polygonised(body.substance.dimension);
+    if body.substance.polygonise.is_some()
+        && body.shapes.is_empty()
+        && let Some(visual) = link.visuals.iter().find(exact)
+    {
+        let place = Place { element: format!("link '{}' <visual>", link.name), at: visual.at };
+        report.add(shapes::not_polygonised(place, visual.geometry.kind()));
+    }
     let place = Place { element: format!("link '{}' <body>", link.name), at: body.at };
     if body.shapes.is_empty() && body.misread == 0 && link.visuals.is_empty() {
         let message = "there is no shape to compute the mass from".to_string();

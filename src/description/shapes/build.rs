@@ -131,5 +131,9 @@ fn mesh(values: &Values, element: &Element, report: &mut Report) -> Option<Geome
         report.add(Finding::error("out-of-range", element.place_of("scale", report), message, "write scale=\"1 1 1\""));
         return None;
     }
+    if scale.iter().any(|f: &f64| *f < 0.0) {
+        let message = "a negative scale mirrors the mesh; its faces are turned with it".to_string();
+        report.add_once("<mesh scale>", Finding::note("mirrored", element.place_of("scale", report), message, ""));
+    }
     Some(Geometry::Mesh { filename: values.word("filename")?.into(), scale })
 }

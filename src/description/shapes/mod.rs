@@ -5,7 +5,7 @@ mod table;
 mod terrain;
 
 use super::element::{Domain, Element};
-use super::finding::Finding;
+use super::finding::{Finding, Place};
 use super::report::Report;
 use super::rules::{Attribute, Kind, Tag};
 use super::{Finish, Geometry, Origin, PlacedShape, Scaling, suggest};
@@ -75,4 +75,12 @@ pub(super) fn read_shape(element: &Element, report: &mut Report) -> Option<(Geom
 pub(super) fn is_urdf(element: &Element) -> bool {
     let known = SHAPES[..table::URDF_SHAPES].iter().any(|tag| tag.name == element.tag());
     known && table::FINISH.iter().all(|name| element.value(name).is_none())
+}
+
+/// The warning on a shape that cannot be taken as its polygon mesh (B-4).
+pub(super) fn not_polygonised(place: Place, kind: &str) -> Finding {
+    let message = format!("this <{kind}> is not polygonised: it is taken as it is");
+    let mend =
+        "polygonise takes solid boxes, spheres, capsules, cylinders, tubes, cones and frusta without slice and fillet";
+    Finding::warning("polygonise-ignored", place, message, mend)
 }

@@ -12,7 +12,7 @@ use super::super::{
 const LEAST_THICKNESS: f64 = 1e-6;
 
 /// Segments of a full turn where the text does not say.
-const SEGMENTS_OF_A_TURN: f64 = 36.0;
+const SEGMENTS_OF_A_TURN: u32 = 36;
 
 pub(super) const DIMENSION: Attribute = Attribute::optional("dimension", Kind::Word(&["2d", "3d"]));
 pub(super) const THICKNESS: Attribute =
@@ -46,14 +46,31 @@ pub(in super::super) const SHAPE: Tag = Tag {
 pub(in super::super) const PROXY: Tag =
     Tag { name: "proxy", attributes: &[SCALE, SCALE_TOP, SCALE_BOTTOM], children: &[] };
 
-/// A `<shape>` of a body that is made of `body` unless it says otherwise. `None` is reported.
-pub(super) fn shape(element: &Element, body: &Substance, report: &mut Report) -> Option<PlacedShape> {
+/// A `<shape>` of a body that is made of `body`, with its subdivision, unless it says otherwise. `None` is reported.
+pub(super) fn shape(
+    element: &Element,
+    (body, subdivision): (&Substance, Subdivision),
+    report: &mut Report,
+) -> Option<PlacedShape> {
     let values = SHAPE.read_attributes(element, report);
     let mut shape = shapes::read_placed(element, report)?;
     shape.scaling = scaling(&values, element, &shape.geometry, report);
-    let own = merged(&values, element, body, report);
-    if values.flag_or("polygonise", false) && !shape.may_be_polygonised(own.dimension) {
-        report.add(not_polygonised(element, &shape, report));
+    let own = merged(&values, element, (body, subdivision), report);
+    if own.polygonise.is_some() && !shape.may_be_polygonised(own.dimension) {
+        report.add_once(
+            shape.geometry.kind(),
+            shapes::not_polygonised(element.place_of("polygonise", report), shape.geometry.kind()),
+        );
+    }
+    if own.polygonise.is_none() && (values.number("segments"), values.number("flat_segments")) != (None, None) {
+        let message = "segments are for polygonised shapes, and this one is not".to_string();
+        let mend = "add polygonise=\"true\", or take the segments out";
+        report.add(Finding::warning("segments-ignored", element.place_of("segments", report), message, mend));
+    }
+    if body.specific_gravity == 0.0 && own.specific_gravity > 0.0 {
+        let message = "the <body> is static (specific gravity 0), so this shape adds no mass".to_string();
+        let mend = "give the <body> a specific gravity above 0";
+        report.add(Finding::warning("static-body", element.place_of("specific_gravity", report), message, mend));
     }
     shape.substance = Some(own);
     Some(shape)
@@ -70,24 +87,34 @@ pub(super) fn proxy(element: &Element, report: &mut Report) -> Option<PlacedShap
 /// What `<body>` says.
 pub(super) fn substance(values: &Values, element: &Element, specific_gravity: f64, report: &mut Report) -> Substance {
     let plain = Substance { specific_gravity, dimension: Dimension::Solid, polygonise: None };
-    merged(values, element, &plain, report)
+    merged(values, element, (&plain, subdivision(values)), report)
 }
 
-/// What the element says, and for the rest what `base` is.
-fn merged(values: &Values, element: &Element, base: &Substance, report: &mut Report) -> Substance {
-    let polygonise = values.flag_or("polygonise", base.polygonise.is_some()).then(|| {
-        let before = |pick: fn(&Subdivision) -> u32, or: f64| base.polygonise.as_ref().map_or(or, |s| pick(s).into());
-        let limited = values.flag_or("limit_subdivisions", false);
-        let flat = values.number_or("flat_segments", before(|s| s.flat, 1.0));
-        Subdivision {
-            around: values.number_or("segments", before(|s| s.around, SEGMENTS_OF_A_TURN)) as u32,
-            flat: if limited { 1 } else { flat as u32 },
-        }
-    });
+/// The segments that `<body>` names, whether or not it is polygonised itself: its shapes may be.
+pub(super) fn subdivision(values: &Values) -> Subdivision {
+    segments(values, Subdivision { around: SEGMENTS_OF_A_TURN, flat: 1 })
+}
+
+fn segments(values: &Values, base: Subdivision) -> Subdivision {
+    let limited = values.flag_or("limit_subdivisions", false);
+    Subdivision {
+        around: values.number_or("segments", base.around.into()) as u32,
+        flat: if limited { 1 } else { values.number_or("flat_segments", base.flat.into()) as u32 },
+    }
+}
+
+/// What the element says, and for the rest what the base is.
+fn merged(
+    values: &Values,
+    element: &Element,
+    (base, subdivision): (&Substance, Subdivision),
+    report: &mut Report,
+) -> Substance {
+    let polygonise = values.flag_or("polygonise", base.polygonise.is_some());
     Substance {
         specific_gravity: values.number_or("specific_gravity", base.specific_gravity),
         dimension: dimension(values, element, base.dimension, report),
-        polygonise,
+        polygonise: polygonise.then(|| segments(values, subdivision)),
     }
 }
 
@@ -159,12 +186,4 @@ fn scales(geometry: &Geometry) -> bool {
             | Geometry::SphericalTerrain { .. }
             | Geometry::Mesh { .. }
     )
-}
-
-fn not_polygonised(element: &Element, shape: &PlacedShape, report: &Report) -> Finding {
-    let kind = shape.geometry.kind();
-    let message = format!("this <{kind}> is not polygonised: it is taken as it is");
-    let mend =
-        "polygonise takes solid boxes, spheres, capsules, cylinders, tubes, cones and frusta without slice and fillet";
-    Finding::warning("polygonise-ignored", element.place_of("polygonise", report), message, mend)
 }

@@ -91,7 +91,8 @@ fn read_body(element: &Element, report: &mut Report) -> Option<Body> {
     let values = BODY.read(element, report);
     let gravity = values.number("specific_gravity");
     let substance = body::substance(&values, element, gravity.unwrap_or(1.0), report);
-    let shapes: Vec<_> = element.all("shape").filter_map(|shape| body::shape(&shape, &substance, report)).collect();
+    let base = (&substance, body::subdivision(&values));
+    let shapes: Vec<_> = element.all("shape").filter_map(|shape| body::shape(&shape, base, report)).collect();
     Some(Body {
         at: element.place(report).at,
         substance: gravity.map(|_| substance)?,

@@ -50,6 +50,6 @@ impl Builder {
     }
 
     pub(super) fn finish(self) -> Result<TriMesh, Inside> {
-        if self.mesh.triangles.is_empty() { Err(Inside::Empty) } else { Ok(self.mesh) }
+        if self.mesh.triangles.is_empty() { Err(Inside::Empty) } else { Ok(self.mesh.without_strays()) }
     }
 }

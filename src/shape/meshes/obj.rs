@@ -24,8 +24,10 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, Inside> {
     let mut reader = Reader { builder: Builder::default(), corners: vec![], faces: vec![], ends: vec![] };
     let mut whole = String::new();
+    let mut last = 0;
     for (n, line) in lines(bytes) {
-        match line.trim_end().strip_suffix('\\') {
+        last = n;
+        match line.split('#').next().unwrap_or("").trim_end().strip_suffix('\\') {
             Some(part) => {
                 whole.push_str(part);
                 whole.push(' ');
@@ -37,6 +39,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriMesh, Inside> {
             }
         }
     }
+    reader.line(last, &whole)?;
     reader.finish()
 }
 

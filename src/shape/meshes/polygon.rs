@@ -46,12 +46,10 @@ impl Polygons {
         let n = self.flat.len();
         let left = (0..n).all(|i| turn(self.flat[i], self.flat[(i + 1) % n], self.flat[(i + 2) % n]) >= 0.0);
         // A star turns left everywhere too, but goes around more than once: then its x rises and falls more than once.
-        let rises = (0..n).filter(|&i| {
-            let (a, b) = (self.flat[i], self.flat[(i + 1) % n]);
-            let before = (0..n).map(|k| self.flat[(i + n - k) % n]).find(|p| p[0] != a[0]);
-            b[0] > a[0] && before.is_none_or(|p| p[0] > a[0])
-        });
-        left && rises.take(2).count() <= 1
+        let steps = (0..n).map(|i| self.flat[(i + 1) % n][0] - self.flat[i][0]).filter(|dx| *dx != 0.0);
+        let rising: Vec<bool> = steps.map(|dx| dx > 0.0).collect();
+        let valleys = (0..rising.len()).filter(|&i| rising[i] && !rising[(i + rising.len() - 1) % rising.len()]);
+        left && valleys.take(2).count() <= 1
     }
 
     /// Cuts off one ear after the other; where there is none, as in a face that crosses itself, the rest becomes a fan.

@@ -15,7 +15,8 @@ pub(super) fn weld(mesh: &mut TriMesh, edges: &Edges) -> Option<String> {
     let mut border: Vec<u32> = edges.all_odd().flat_map(|side| side.ends()).collect();
     border.sort_unstable();
     border.dedup();
-    let mut kept = Grid { width, cells: HashMap::new() };
+    let least = border.iter().fold(Vec3::repeat(f64::INFINITY), |least, v| least.inf(&mesh.vertices[*v as usize]));
+    let mut kept = Grid { least, width, cells: HashMap::new() };
     let mut moved = HashMap::new();
     let mut widest = 0.0_f64;
     for vertex in border {
@@ -40,13 +41,14 @@ pub(super) fn weld(mesh: &mut TriMesh, edges: &Edges) -> Option<String> {
 
 /// Vertices by cubes four cracks wide; no two vertices in it are nearer than a crack, so a cube holds a bounded number.
 struct Grid {
+    least: Vec3,
     width: f64,
     cells: HashMap<[i64; 3], Vec<u32>>,
 }
 
 impl Grid {
     fn cell(&self, place: Vec3) -> [i64; 3] {
-        [0, 1, 2].map(|i| (place[i] / (4.0 * self.width)).floor() as i64)
+        [0, 1, 2].map(|i| ((place[i] - self.least[i]) / (4.0 * self.width)).floor() as i64)
     }
 
     /// The vertex that is nearest, if it is within a crack's width; and how far away it is, m.

@@ -14,6 +14,9 @@ use crate::math::Vec3;
 use edges::Edges;
 use std::collections::HashSet;
 
+/// What a sentence of [`closed_solid`] holds if it tells of parts that share space.
+pub const COUNTS_TWICE: &str = "counts twice";
+
 /// Why a mesh is not the surface of a solid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolidFault {
@@ -88,12 +91,14 @@ pub fn closed_solid(mesh: TriMesh) -> Result<(TriMesh, Vec<String>), SolidFault>
     let mut told = Vec::new();
     check(&mesh)?;
     drop_useless(&mut mesh, &mut told);
+    mesh = mesh.without_strays();
     let mut edges = Edges::of(&mesh.triangles);
     if edges.odd() > 0
         && let Some(welded) = cracks::weld(&mut mesh, &edges)
     {
         told.push(welded);
         drop_useless(&mut mesh, &mut told);
+        mesh = mesh.without_strays();
         edges = Edges::of(&mesh.triangles);
     }
     if let Some(edge) = edges.first_odd() {

@@ -9,6 +9,8 @@ use crate::shape::TriMesh;
 /// Bounds of what comparing parts may cost: a comparison of boxes is 1, a triangle seen from a point `LOOK`.
 const MOST_WORK: usize = 500_000_000;
 const LOOK: usize = 20;
+/// Corners of a part that are looked for in another one.
+const PROBES: usize = 8;
 
 /// Turns parts that are inside out. A part that faces inwards within one that faces outwards is a cavity, and stays.
 pub(super) fn face_outwards(mesh: &mut TriMesh, edges: &Edges, told: &mut Vec<String>) {
@@ -29,6 +31,7 @@ pub(super) fn face_outwards(mesh: &mut TriMesh, edges: &Edges, told: &mut Vec<St
         twice += usize::from(parts[i].sign() != 0 && outside + faces(i, &turned) > 1);
     }
     turn(mesh, &parts, &turned, told);
+    nesting.look_for_crossings(mesh, &parts);
     nesting.tell(twice, told);
 }
 
@@ -92,6 +95,17 @@ impl Part {
         (0..3).all(|i| self.min[i] <= other.min[i] && self.max[i] >= other.max[i])
     }
 
+    fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|i| self.min[i] < other.max[i] && self.max[i] > other.min[i])
+    }
+
+    /// Some of its corners that lie within the box of another part.
+    fn within<'m>(&'m self, other: &'m Self, mesh: &'m TriMesh) -> impl Iterator<Item = Vec3> + 'm {
+        let inside = |p: &Vec3| (0..3).all(|i| (other.min[i]..=other.max[i]).contains(&p[i]));
+        let all = self.corners(mesh).flatten();
+        all.step_by(1 + self.triangles.len() / 64).filter(inside).take(PROBES)
+    }
+
     /// The points that reach farthest along the axes.
     fn tips(&self, mesh: &TriMesh) -> Vec<Vec3> {
         let along = |axis: usize, sign: f64| {
@@ -137,6 +151,34 @@ impl Nesting {
             }
         }
         around
+    }
+
+    /// Parts of which no box holds the other: some corners of each are looked for in the other one. What crosses with
+    /// its edges alone is not found.
+    fn look_for_crossings(&mut self, mesh: &TriMesh, parts: &[Part]) {
+        for (i, part) in parts.iter().enumerate() {
+            for other in &parts[..i] {
+                self.work += 1;
+                if self.work > MOST_WORK {
+                    return;
+                }
+                if part.overlaps(other) && !other.reaches_around(part) && self.cross(mesh, part, other) {
+                    self.crossing += 1;
+                    break;
+                }
+            }
+        }
+    }
+
+    fn cross(&mut self, mesh: &TriMesh, a: &Part, b: &Part) -> bool {
+        let mut found = false;
+        for (one, two) in [(a, b), (b, a)] {
+            for probe in one.within(two, mesh) {
+                self.work += LOOK * two.triangles.len();
+                found |= side_of(probe, two.corners(mesh)) == Side::Inside;
+            }
+        }
+        found
     }
 
     fn tell(&self, twice: usize, told: &mut Vec<String>) {
