@@ -41,7 +41,13 @@ pub(super) fn check(d: &Description, robot: &Element, tree: Option<&Tree>, repor
 fn check_inertial(inertial: &Inertial, body: Option<Rigid>, place: Place, report: &mut Report) {
     let greatest = inertial.inertia.iter().fold(0.0_f64, |max, i| max.max(i.abs()));
     if inertial.mass > 0.0 && greatest <= POINT * inertial.mass {
-        let message = format!("{} kg with no inertia: simulated as a point mass", inertial.mass);
+        let message = match greatest {
+            0.0 => format!("{} kg with no inertia: simulated as a point mass", inertial.mass),
+            _ => format!(
+                "{:e} kg with next to no inertia ({greatest:e} kg·m² at most): simulated as written",
+                inertial.mass
+            ),
+        };
         let mend = "give the inertia about the centre of mass";
         report.add_once("", Finding::warning("zero-inertia", place, message, mend));
     } else if inertial.mass == 0.0 && greatest > 0.0 {
