@@ -1,7 +1,7 @@
 //! Textbook values and closed forms, and what is refused.
 
 use super::weigh::{WALL, deviation, solid, substance, weigh, weighed};
-use realnoid::description::{Dimension, Finish, Geometry, Scaling, Substance};
+use realnoid::description::{Dimension, Finish, Geometry, Heights, Scaling, Substance};
 use realnoid::mass::{MassProperties, Method, Refusal, of_shape};
 use realnoid::shape::{Meshes, Shape, ShapeFault};
 use std::f64::consts::{PI, TAU};
@@ -122,4 +122,47 @@ fn a_quad_with_a_corner_bent_inwards_is_split_inside() {
     }
     let bow = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     assert_eq!(Shape::new(Geometry::Quad { corners: bow }), Err(ShapeFault::Crossing));
+}
+
+/// The rim of a cone as flat as a leaf has an angle of which the cosine says nothing.
+#[test]
+fn a_fillet_on_a_flat_cone() {
+    let (r, length, f) = (1.0, 1e-7, 1e-8);
+    let shape = Shape::finished(
+        Geometry::Cone { radius_x: r, radius_y: r, length },
+        Finish { fillet: f, ..Finish::default() },
+        Scaling::default(),
+    );
+    // From the base up: the rounding touches the base at r − t and the mantle at t from the rim, then a cone is left.
+    let slant = f64::hypot(r, length);
+    let t = f * (r + slant) / length;
+    let top = t * length / slant;
+    let sweep = (1.0 - top / f).acos();
+    let n = 20_000;
+    let slice = |i: u32| {
+        let angle = (f64::from(i) + 0.5) * sweep / f64::from(n);
+        (r - t + f * angle.sin()).powi(2) * f * angle.sin() * sweep / f64::from(n)
+    };
+    let rest = (r * (1.0 - top / length)).powi(2) * (length - top) / 3.0;
+    let volume = PI * ((0..n).map(slice).sum::<f64>() + rest);
+    let ours = weighed(&shape.unwrap(), Dimension::Solid).unwrap().volume;
+    assert!((ours / volume - 1.0).abs() < 1e-7, "{ours:e} {volume:e}");
+}
+
+#[test]
+fn terrains_weigh_what_plane_and_sphere_do() {
+    let level = Heights::Written { columns: 4, values: vec![0.5; 12] };
+    let field = weighed(&shape(Geometry::Terrain { size: [2.0, 3.0, 0.4], heights: level }), WALL).unwrap();
+    let plate = weighed(&shape(Geometry::Plane { size: [2.0, 3.0] }), WALL).unwrap();
+    assert!((field.volume / plate.volume - 1.0).abs() < 1e-14);
+    assert!((field.properties.center.z - 0.2).abs() < 1e-14, "half of the height of a value of 1");
+    assert!((field.properties.inertia - plate.properties.inertia).norm() < 1e-14);
+    // The inscribed polyhedron of a globe: lighter by a part of the order of the square of its step.
+    let missing = |columns: usize| {
+        let heights = Heights::Written { columns, values: vec![0.5; columns * (columns / 2 + 1)] };
+        let globe = shape(Geometry::SphericalTerrain { radius: 0.4, height: 0.2, heights });
+        1.0 - weighed(&globe, Dimension::Solid).unwrap().volume / (4.0 / 3.0 * PI * 0.125)
+    };
+    let (coarse, fine) = (missing(40), missing(80));
+    assert!(fine > 0.0 && (coarse / fine - 4.0).abs() < 0.05, "{coarse} {fine}");
 }
