@@ -2,7 +2,7 @@
 
 use super::args::BenchArgs;
 use super::base_by_name;
-use super::load::load;
+use super::load::load_or_say;
 use crate::dynamics::{Kinematics, Workspace, aba, aba_fused, crba, kinematics, rnea};
 use crate::engine::State;
 use crate::math::Vec3;
@@ -26,12 +26,9 @@ pub fn cpu_seconds() -> f64 {
 
 /// Measures and prints medians in µs per call.
 pub fn run(args: &BenchArgs) -> ExitCode {
-    let loaded = match load(args.packages.source(args.urdf.as_deref()), base_by_name(&args.base)) {
+    let loaded = match load_or_say(args.packages.source(args.urdf.as_deref()), base_by_name(&args.base)) {
         Ok(loaded) => loaded,
-        Err(report) => {
-            eprint!("{report}");
-            return ExitCode::FAILURE;
-        }
+        Err(failure) => return failure,
     };
     let m = &loaded.model;
     let rows = measure(m, args.seconds.max(0.001));

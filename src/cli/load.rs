@@ -7,6 +7,7 @@ use crate::math::Pose;
 use crate::model::{Base, LinkFrame, Model};
 use crate::shape::Meshes;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::Arc;
 
 /// The default humanoid.
@@ -72,6 +73,17 @@ impl Examined {
 /// The printable report: every finding, or why the file could not be read.
 pub fn load(source: Source, base: Base) -> Result<Loaded, String> {
     load_at(source, base, Pose::identity())
+}
+
+/// As [`load`]; where that fails, the report is printed.
+///
+/// # Errors
+/// The exit code.
+pub fn load_or_say(source: Source, base: Base) -> Result<Loaded, ExitCode> {
+    load(source, base).map_err(|report| {
+        eprint!("{report}");
+        ExitCode::FAILURE
+    })
 }
 
 /// As [`load`], with the root link of a fixed base at `base_pose` in the world.

@@ -5,6 +5,7 @@
 
 use super::{Body, PlacedShape};
 use crate::math::{Pose, Quat, Vec3, from_roll_pitch_yaw};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A place in the text: 1-based line and column, and the byte range for underlining.
@@ -37,6 +38,13 @@ pub struct Description {
     pub groups: Vec<JointGroup>,
     /// `<chain>` tags.
     pub chains: Vec<Chain>,
+}
+
+impl Description {
+    /// The joint that carries each link, by the link's name; the root is not in it.
+    pub fn joints_above(&self) -> HashMap<&str, &Joint> {
+        self.joints.iter().map(|joint| (joint.child.as_str(), joint)).collect()
+    }
 }
 
 /// Position of a frame in its parent frame.

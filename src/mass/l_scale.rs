@@ -1,8 +1,9 @@
 //! B-18: the L scale of what one joint moves.
 
+use super::properties::symmetric;
 use super::{LinkBody, MassProperties};
 use crate::description::{Description, JointKind};
-use crate::math::{Mat3, Pose};
+use crate::math::Pose;
 use std::collections::HashMap;
 
 /// Multiplies, for the simulation, the inertia of each rigid whole (links joined by fixed joints) about its centre of
@@ -28,13 +29,9 @@ pub(super) fn apply(description: &Description, bodies: &mut [LinkBody]) -> Vec<u
     idle
 }
 
-fn symmetric(m: Mat3) -> Mat3 {
-    (m + m.transpose()) * 0.5
-}
-
 /// Links joined by fixed joints: index, frame in the frame of the whole's root, number of joints from there.
 fn wholes(description: &Description) -> Vec<Vec<(usize, Pose, usize)>> {
-    let above: HashMap<&str, _> = description.joints.iter().map(|j| (j.child.as_str(), j)).collect();
+    let above = description.joints_above();
     let mut wholes: HashMap<&str, Vec<(usize, Pose, usize)>> = HashMap::new();
     let mut roots = vec![];
     for (i, link) in description.links.iter().enumerate() {

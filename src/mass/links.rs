@@ -9,7 +9,6 @@ use crate::description::{
 };
 use crate::math::{Mat3, Vec3};
 use crate::shape::{Meshes, Shape};
-use std::collections::HashMap;
 use std::path::Path;
 
 /// What one link weighs, and where that comes from.
@@ -169,14 +168,10 @@ fn from_shape(placed: &PlacedShape, body: &Body, meshes: &Meshes) -> Result<Shap
 /// Per link: is there a moving joint between it and the root? A cycle, which the description room reports, ends the
 /// walk.
 fn moving_links(description: &Description) -> Vec<bool> {
-    let to_parent: HashMap<&str, (&str, bool)> = description
-        .joints
-        .iter()
-        .map(|j| (j.child.as_str(), (j.parent.as_str(), j.kind != JointKind::Fixed)))
-        .collect();
+    let above = description.joints_above();
     let moves = |link: &Link| {
-        let steps = std::iter::successors(to_parent.get(link.name.as_str()), |(parent, _)| to_parent.get(parent));
-        steps.take(description.joints.len()).any(|&(_, moves)| moves)
+        let path = std::iter::successors(above.get(link.name.as_str()), |joint| above.get(joint.parent.as_str()));
+        path.take(description.joints.len()).any(|joint| joint.kind != JointKind::Fixed)
     };
     description.links.iter().map(moves).collect()
 }

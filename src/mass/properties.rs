@@ -89,6 +89,6 @@ fn point_inertia(mass: f64, arm: &Vec3) -> Mat3 {
 }
 
 /// Takes out the rounding difference between the two triangles, so that the tensor is symmetric to the bit.
-fn symmetric(m: Mat3) -> Mat3 {
+pub(super) fn symmetric(m: Mat3) -> Mat3 {
     (m + m.transpose()) * 0.5
 }

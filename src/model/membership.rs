@@ -1,7 +1,6 @@
 //! Which joint's link a body belongs to (B-7).
 
 use crate::description::{Description, Joint, JointGroup, JointKind};
-use std::collections::HashMap;
 
 /// A URDF link as a part of what one axis moves: the source's link (節), the bodies from one axis to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,7 +15,7 @@ pub struct Membership {
 
 /// Per link of the description; `None`: fixed to the root of the robot.
 pub(super) fn memberships(d: &Description) -> Vec<Option<Membership>> {
-    let above: HashMap<&str, &Joint> = d.joints.iter().map(|j| (j.child.as_str(), j)).collect();
+    let above = d.joints_above();
     let group_of = |joint: &Joint| d.groups.iter().find(|g| names(g).any(|name| *name == joint.name));
     let membership = |link: &str| {
         let path = std::iter::successors(above.get(link), |joint| above.get(joint.parent.as_str()));

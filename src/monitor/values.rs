@@ -78,14 +78,17 @@ fn joint_link(model: &Model, bodies: &[LinkBody], body: usize) -> Option<LinkVal
     let parts: Vec<MassProperties> = heavy.iter().map(|(i, pose)| bodies[*i].properties.placed(pose)).collect();
     let depth = |i: usize| std::iter::successors(Some(i), |i| model.links[*i].parent).count();
     let nearest = heavy.iter().map(|(i, _)| *i).min_by_key(|i| depth(*i))?;
+    let members = heavy.iter().map(|(i, _)| model.links[*i].name.clone()).collect();
+    let volume = heavy.iter().map(|(i, _)| bodies[*i].volume).sum();
+    let zero_exponent = heavy.iter().filter_map(|(i, _)| bodies[*i].zero_exponent).min();
     Some(LinkValues {
         frame: model.links[root].name.clone(),
         membership: model.links[root].membership.clone(),
-        members: heavy.iter().map(|(i, _)| model.links[*i].name.clone()).collect(),
-        volume: heavy.iter().map(|(i, _)| bodies[*i].volume).sum(),
+        members,
+        volume,
         properties: MassProperties::sum(&parts),
-        seats: seats.clone(),
+        seats,
         l_scale: bodies[nearest].l_scale,
-        zero_exponent: heavy.iter().filter_map(|(i, _)| bodies[*i].zero_exponent).min(),
+        zero_exponent,
     })
 }

@@ -51,11 +51,6 @@ impl Shape {
         })
     }
 
-    /// Is it stretched beyond what its primitive says?
-    pub fn is_stretched(&self) -> bool {
-        self.stretch != [1.0; 3]
-    }
-
     /// A surface with no inside: forced 2D (B-11). A mesh file may turn out to be open as well.
     pub fn is_open(&self) -> bool {
         self.finish.open

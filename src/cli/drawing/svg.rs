@@ -26,7 +26,7 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// Path data of several lines, closed or not.
-pub(super) fn path(lines: &[Vec<Point>], closed: bool) -> String {
+fn path(lines: &[Vec<Point>], closed: bool) -> String {
     let mut d = String::new();
     for line in lines {
         for (i, p) in line.iter().enumerate() {

@@ -7,18 +7,15 @@ mod values;
 use super::args::InspectArgs;
 use super::base_by_name;
 use super::drawing::draw_robot;
-use super::load::load;
+use super::load::load_or_say;
 use std::process::ExitCode;
 pub use values::Unit;
 
 /// Prints tables, values in full, JSON, or the URDF with inertials.
 pub fn run(args: &InspectArgs) -> ExitCode {
-    let loaded = match load(args.packages.source(args.urdf.as_deref()), base_by_name(&args.base)) {
+    let loaded = match load_or_say(args.packages.source(args.urdf.as_deref()), base_by_name(&args.base)) {
         Ok(loaded) => loaded,
-        Err(report) => {
-            eprint!("{report}");
-            return ExitCode::FAILURE;
-        }
+        Err(failure) => return failure,
     };
     if let Some(file) = &args.svg
         && let Err(error) = std::fs::write(file, draw_robot(&loaded))

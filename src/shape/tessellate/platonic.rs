@@ -19,7 +19,7 @@ pub(super) fn polyhedron(faces: u32, radius: f64) -> TriMesh {
 }
 
 /// The corners of a regular polyhedron, at distance `radius`.
-pub(in super::super) fn corners(faces: u32, radius: f64) -> Vec<Vec3> {
+fn corners(faces: u32, radius: f64) -> Vec<Vec3> {
     directions(faces).into_iter().map(|d| d.normalize() * radius).collect()
 }
 
@@ -78,7 +78,7 @@ pub(super) fn pyramid(size: [f64; 3]) -> TriMesh {
 }
 
 /// The base, anticlockwise seen from above, and the tip.
-pub(in super::super) fn pyramid_corners(size: [f64; 3]) -> [Vec3; 5] {
+fn pyramid_corners(size: [f64; 3]) -> [Vec3; 5] {
     let [x, y, z] = size.map(|s| s / 2.0);
     [Vec3::new(-x, -y, -z), Vec3::new(x, -y, -z), Vec3::new(x, y, -z), Vec3::new(-x, y, -z), Vec3::new(0.0, 0.0, z)]
 }
