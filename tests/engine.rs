@@ -161,7 +161,7 @@ fn the_same_run_twice_and_a_copy_give_the_same_bits() {
     for a in &mut m.axes {
         (a.friction, a.damping, a.lower, a.upper) = (0.3, 0.1, -0.5, 0.4);
     }
-    m.effects = realnoid::model::Effects::called_for(&m.axes, &m.bodies);
+    m.effects = realnoid::model::Effects::called_for(&m);
     let commands: Vec<AxisCommand> = (0..m.axes.len())
         .map(|i| if i % 2 == 0 { AxisCommand::servo(0.2) } else { AxisCommand::torque(3.0) })
         .collect();
@@ -228,7 +228,7 @@ fn dry_friction_sticks_exactly() {
 #[test]
 fn servos_hold_and_saturate() {
     let mut m = pendulum();
-    m.axes[0].max_torque = 30.0;
+    m.axes[0].drive.max_torque = 30.0;
     for interval in [0.01, 0.001] {
         let mut w = world(&m, settings(Integrator::SemiImplicitEuler, interval, 1));
         w.set_commands(&[AxisCommand::servo(0.8)]).unwrap();
@@ -280,7 +280,7 @@ fn an_unbounded_servo() {
 fn torque_speed_line() {
     let mut m = pendulum();
     m.effects.gravity = false;
-    m.axes[0].no_load_speed = 4.0;
+    m.axes[0].drive.no_load_speed = 4.0;
     let tau: f64 = 0.51 * 4.0 / 2.0;
     for interval in [0.01, 0.001] {
         let mut w = world(&m, settings(Integrator::SemiImplicitEuler, interval, 1));
@@ -344,9 +344,9 @@ fn shake_random_trees(iterations: u32) -> (u64, u64) {
         for a in &mut m.axes {
             (a.friction, a.damping) = (rng.unit().abs() * 3.0, rng.unit().abs());
             (a.lower, a.upper) = (-0.2 - rng.unit().abs(), 0.2 + rng.unit().abs());
-            (a.max_torque, a.max_speed) = (rng.unit().abs() * 100.0, 5.0);
+            (a.drive.max_torque, a.drive.max_speed) = (rng.unit().abs() * 100.0, 5.0);
         }
-        m.effects = realnoid::model::Effects::called_for(&m.axes, &m.bodies);
+        m.effects = realnoid::model::Effects::called_for(&m);
         let s = Settings { solver_iterations: iterations, ..settings(Integrator::SemiImplicitEuler, 0.005, 1) };
         let mut w = world(&m, s);
         let mut commands = w.commands().to_vec();

@@ -73,6 +73,7 @@ impl<T: Real> Workspace<T> {
         match m.axes[axis].slot {
             AxisSlot::Scalar { v, .. } => self.dof[v].d,
             AxisSlot::Euler { group, angle } => self.balls[m.bodies[m.eulers[group].body].ball].mobility(angle),
+            AxisSlot::Apart { .. } => T::of(0.0),
         }
     }
 

@@ -64,12 +64,14 @@ impl State {
                 let rates = m.eulers[group].rates(self.angles[group]);
                 (self.angles[group][angle], rates.gradient[angle].dot(self.group_velocity(m, group)))
             }
+            AxisSlot::Apart { position } => (position, 0.0),
         }
     }
 
     /// Acceleration of an axis, given those of the velocity coordinates (nv).
     pub fn axis_acceleration(&self, m: &Model, axis: usize, vdot: &[f64]) -> f64 {
         match m.axes[axis].slot {
+            AxisSlot::Apart { .. } => 0.0,
             AxisSlot::Scalar { v, .. } => vdot[v],
             AxisSlot::Euler { group, angle } => {
                 let g = &m.eulers[group];
@@ -84,6 +86,7 @@ impl State {
     /// Adds a torque on an axis to the torques of the velocity coordinates (nv).
     pub fn add_axis_torque(&self, m: &Model, axis: usize, torque: f64, tau: &mut [f64]) {
         match m.axes[axis].slot {
+            AxisSlot::Apart { .. } => {}
             AxisSlot::Scalar { v, .. } => tau[v] += torque,
             AxisSlot::Euler { group, angle } => {
                 let g = &m.eulers[group];
@@ -103,6 +106,7 @@ impl State {
     /// Sets an axis; in a 3DOF group the other two angles and rates stay as they are.
     pub fn set_axis(&mut self, m: &Model, axis: usize, position: f64, speed: f64) {
         match m.axes[axis].slot {
+            AxisSlot::Apart { .. } => {}
             AxisSlot::Scalar { q, v } => (self.q[q], self.v[v]) = (position, speed),
             AxisSlot::Euler { group, angle } => {
                 let g = &m.eulers[group];

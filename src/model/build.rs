@@ -1,7 +1,9 @@
 //! Description + mass properties → Model.
 
 use super::membership::memberships;
-use super::{Axis, AxisKind, AxisSlot, Body, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model};
+use super::{
+    Axis, AxisKind, AxisSlot, Body, DriveLimits, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model, Softness,
+};
 use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind};
 use crate::mass::MassProperties;
 use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3};
@@ -66,7 +68,10 @@ impl<'a> Builder<'a> {
             nq: 0,
             nv: 0,
             balls: 0,
-            effects: Effects::called_for(&[], &[world()]),
+            softs: vec![],
+            couplings: vec![],
+            breakables: vec![],
+            effects: Effects::NONE,
         };
         let seats = vec![(0, Pose::identity()); d.links.len()];
         Self { d, masses, link_index, children, seats, slots: HashMap::new(), model }
@@ -246,7 +251,7 @@ impl<'a> Builder<'a> {
                 self.model.axes.push(axis(j, *slot));
             }
         }
-        self.model.effects = Effects::called_for(&self.model.axes, &self.model.bodies);
+        self.model.effects = Effects::called_for(&self.model);
     }
 }
 
@@ -255,21 +260,29 @@ fn axis(j: &Joint, slot: AxisSlot) -> Axis {
     let limit = j.limit.as_ref();
     let range = limit.filter(|_| limited);
     let drive = j.drive.as_ref();
-    let no_load_speed = drive.and_then(|d| d.no_load_speed).unwrap_or(f64::INFINITY);
-    let velocity = limit.and_then(|l| l.velocity).unwrap_or(f64::INFINITY);
     Axis {
         name: j.name.clone(),
         kind: if j.kind == JointKind::Prismatic { AxisKind::Linear } else { AxisKind::Rotary },
         slot,
         lower: range.map_or(f64::NEG_INFINITY, |l| l.lower),
         upper: range.map_or(f64::INFINITY, |l| l.upper),
-        max_torque: (drive.and_then(|d| d.max_torque)).or(limit.and_then(|l| l.effort)).unwrap_or(f64::INFINITY),
-        no_load_speed,
-        max_speed: no_load_speed.min(velocity),
+        stop: stop(j),
+        drive: DriveLimits::of(j),
         damping: j.damping,
         friction: j.friction,
         mode: drive.map_or(DriveMode::Idle, |d: &Drive| d.mode),
         switchable: drive.is_none_or(|d| d.switchable),
+    }
+}
+
+/// Share of a stop's penetration that one step takes back where no tag says it (ODE's default error reduction).
+const STOP_ERP: f64 = 0.2;
+
+fn stop(j: &Joint) -> Softness {
+    let c = j.constraint.as_ref();
+    Softness {
+        erp: c.and_then(|c| c.stop_erp).unwrap_or(STOP_ERP),
+        cfm: c.and_then(|c| c.stop_cfm).unwrap_or(0.0),
     }
 }
 

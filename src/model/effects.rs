@@ -1,9 +1,10 @@
 //! Which effects a scene calls for. A stage whose effect is not called for is neither built nor run.
 
-use super::{Axis, Body};
+use super::Model;
 
 /// Names for `--on` and `--off`, in the order of the fields of [`Effects`].
-pub const EFFECT_NAMES: [&str; 5] = ["gravity", "damping", "friction", "limits", "drives"];
+pub const EFFECT_NAMES: [&str; 9] =
+    ["gravity", "damping", "friction", "limits", "drives", "rotor_inertia", "compliance", "mimic", "breaking"];
 
 /// One switch per effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,28 +13,63 @@ pub struct Effects {
     pub gravity: bool,
     /// Viscous damping of the axes (`<dynamics damping>`).
     pub damping: bool,
-    /// Coulomb friction of the axes (`<dynamics friction>`).
+    /// Dry friction of the axes: `<dynamics friction>`, static and dynamic resistance.
     pub friction: bool,
     /// Stops (`<limit lower upper>`).
     pub limits: bool,
     /// Drives: applied torques and servos.
     pub drives: bool,
+    /// Reflected inertia of the motors (`<drive rotor_inertia gear_ratio>`).
+    pub rotor_inertia: bool,
+    /// Soft joints (`<constraint cfm>`); off, they are hard.
+    pub compliance: bool,
+    /// Axes that follow others (`<mimic>`); off, they move by themselves.
+    pub mimic: bool,
+    /// Joints that come apart (`<constraint break_threshold>`).
+    pub breaking: bool,
 }
 
 impl Effects {
     /// What the scene calls for.
-    pub fn called_for(axes: &[Axis], bodies: &[Body]) -> Self {
+    pub fn called_for(m: &Model) -> Self {
+        let any = |used: fn(&super::Axis) -> bool| m.axes.iter().any(used);
         Self {
-            gravity: bodies[1..].iter().any(|b| b.mass > 0.0),
-            damping: axes.iter().any(|a| a.damping > 0.0),
-            friction: axes.iter().any(|a| a.friction > 0.0),
-            limits: axes.iter().any(|a| a.lower.is_finite() || a.upper.is_finite()),
-            drives: !axes.is_empty(),
+            gravity: m.bodies[1..].iter().any(|b| b.mass > 0.0),
+            damping: any(|a| a.damping > 0.0),
+            friction: any(|a| a.friction > 0.0 || a.drive.static_resistance > 0.0),
+            limits: any(|a| a.lower.is_finite() || a.upper.is_finite()),
+            drives: !m.axes.is_empty(),
+            rotor_inertia: any(|a| a.drive.rotor_inertia > 0.0),
+            compliance: !m.softs.is_empty(),
+            mimic: !m.couplings.is_empty(),
+            breaking: !m.breakables.is_empty(),
         }
     }
+    /// No effect at all.
+    pub const NONE: Self = Self {
+        gravity: false,
+        damping: false,
+        friction: false,
+        limits: false,
+        drives: false,
+        rotor_inertia: false,
+        compliance: false,
+        mimic: false,
+        breaking: false,
+    };
     /// The switches in the order of [`EFFECT_NAMES`].
-    pub fn as_array(&self) -> [bool; 5] {
-        [self.gravity, self.damping, self.friction, self.limits, self.drives]
+    pub fn as_array(&self) -> [bool; EFFECT_NAMES.len()] {
+        [
+            self.gravity,
+            self.damping,
+            self.friction,
+            self.limits,
+            self.drives,
+            self.rotor_inertia,
+            self.compliance,
+            self.mimic,
+            self.breaking,
+        ]
     }
     /// Switches one effect; `false` if there is none of that name.
     #[must_use]
@@ -44,6 +80,10 @@ impl Effects {
             "friction" => &mut self.friction,
             "limits" => &mut self.limits,
             "drives" => &mut self.drives,
+            "rotor_inertia" => &mut self.rotor_inertia,
+            "compliance" => &mut self.compliance,
+            "mimic" => &mut self.mimic,
+            "breaking" => &mut self.breaking,
             _ => return false,
         };
         *field = on;

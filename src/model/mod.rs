@@ -4,11 +4,15 @@
 //! invariant: every body's joint frame has its (last) axis along z; the frame of a body is its joint frame.
 
 mod build;
+mod constraint;
+mod drive;
 mod effects;
 mod group;
 mod membership;
 
 pub use build::Base;
+pub use constraint::{Breakable, Coupling, SoftDof, Softness};
+pub use drive::DriveLimits;
 pub use effects::{EFFECT_NAMES, Effects};
 pub use group::{EulerFrame, EulerRates, POLE, rotation};
 pub use membership::Membership;
@@ -26,7 +30,7 @@ pub enum AxisKind {
 }
 
 /// Where the coordinates of an axis are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AxisSlot {
     /// One coordinate of its own: `q[q]`, `v[v]`.
     Scalar {
@@ -41,6 +45,11 @@ pub enum AxisSlot {
         group: usize,
         /// 0 = H, 1 = P, 2 = B.
         angle: usize,
+    },
+    /// Its joint has come apart: the axis keeps its last position and feels nothing.
+    Apart {
+        /// rad or m.
+        position: f64,
     },
 }
 
@@ -57,12 +66,10 @@ pub struct Axis {
     pub lower: f64,
     /// rad or m; +∞ where unlimited.
     pub upper: f64,
-    /// Bound of the drive, N·m or N; +∞ where nothing bounds it.
-    pub max_torque: f64,
-    /// No-load speed at maximum voltage (J-13 b), rad/s or m/s; +∞ where no drive tag gives it.
-    pub no_load_speed: f64,
-    /// Bound of a servo's speed: the no-load speed, else the URDF's velocity limit, else +∞.
-    pub max_speed: f64,
+    /// Softness of the stops (J-18).
+    pub stop: Softness,
+    /// What bounds the drive (J-13 a, b, e, f, g), at start.
+    pub drive: DriveLimits,
     /// Viscous damping, N·m·s/rad or N·s/m.
     pub damping: f64,
     /// Coulomb friction, N·m or N.
@@ -197,6 +204,12 @@ pub struct Model {
     pub nv: usize,
     /// Number of spherical joints.
     pub balls: usize,
+    /// Degrees of freedom that a soft joint (J-18, CFM > 0) adds; none where every joint is hard.
+    pub softs: Vec<SoftDof>,
+    /// Axes that follow others (`<mimic>`).
+    pub couplings: Vec<Coupling>,
+    /// Joints with a break threshold.
+    pub breakables: Vec<Breakable>,
     /// What the scene calls for.
     pub effects: Effects,
 }

@@ -102,6 +102,7 @@ impl AxisSet {
                 let w = V3::new(s.v[at], s.v[at + 1], s.v[at + 2]);
                 (s.angles[group][angle], self.rates[group].gradient[angle].dot(w))
             }
+            AxisSlot::Apart { position } => (position, 0.0),
         }
     }
 
@@ -159,6 +160,7 @@ impl AxisSet {
     /// Hands one axis to the hybrid dynamics, through its own coordinate or the gradient of its angle.
     pub(super) fn write(&mut self, m: &Model, ws: &mut Workspace<f64>, i: usize, input: Input) {
         match (m.axes[i].slot, input) {
+            (AxisSlot::Apart { .. }, _) => {}
             (AxisSlot::Scalar { v, .. }, Input::Locked(acceleration)) => ws.dofs[v] = DofIn::locked(acceleration),
             (AxisSlot::Scalar { v, .. }, Input::Sliding { torque, diagonal }) if diagonal > 0.0 => {
                 ws.dofs[v] = DofIn::implicit(torque, diagonal);
@@ -181,6 +183,7 @@ impl AxisSet {
     /// Torque that keeps a locked axis to its acceleration.
     pub(super) fn reaction(&self, m: &Model, ws: &Workspace<f64>, i: usize) -> f64 {
         match m.axes[i].slot {
+            AxisSlot::Apart { .. } => 0.0,
             AxisSlot::Scalar { v, .. } => ws.reaction[v],
             AxisSlot::Euler { group, .. } => {
                 ws.ball_in[m.bodies[m.eulers[group].body].ball].lock[self.lock[i]].reaction
@@ -196,6 +199,7 @@ impl AxisSet {
             return (v, self.reaction(m, ws, i) + law.slope * v);
         }
         let acceleration = match m.axes[i].slot {
+            AxisSlot::Apart { .. } => 0.0,
             AxisSlot::Scalar { v: k, .. } => qdd[k],
             AxisSlot::Euler { group, angle } => {
                 let at = m.eulers[group].v;

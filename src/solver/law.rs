@@ -103,8 +103,8 @@ impl Law {
             Mode::Idle => {}
             Mode::Torque => {
                 let torque = if c.torque.is_nan() { 0.0 } else { c.torque };
-                self.constant = bounded(torque, axis.max_torque);
-                let speed = given(c.speed, axis.no_load_speed).min(axis.no_load_speed);
+                self.constant = bounded(torque, axis.drive.max_torque);
+                let speed = given(c.speed, axis.drive.no_load_speed).min(axis.drive.no_load_speed);
                 if speed.is_finite() && speed > 0.0 && self.constant * input.v > 0.0 {
                     self.drive_slope = self.constant.abs() / speed;
                     self.slope += self.drive_slope;
@@ -112,9 +112,9 @@ impl Law {
             }
             Mode::Servo => {
                 let error = c.target - input.q;
-                let bound = given(c.speed, axis.max_speed).min(axis.max_speed);
+                let bound = given(c.speed, axis.drive.max_speed).min(axis.drive.max_speed);
                 self.servo_speed = bounded(error / SERVO_TIME.max(h), bound);
-                self.servo = given(c.torque, axis.max_torque).min(axis.max_torque);
+                self.servo = given(c.torque, axis.drive.max_torque).min(axis.drive.max_torque);
                 self.insert(self.servo_speed, self.servo, SERVO);
             }
         }

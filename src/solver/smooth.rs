@@ -35,7 +35,7 @@ impl AxisSet {
                     let torque = self.laws[i].flat(self.place[i] / 2) - self.laws[i].slope * v;
                     Input::Sliding { torque, diagonal: 0.0 }
                 }
-                (true, AxisSlot::Scalar { .. }) => Input::Locked(0.0),
+                (true, AxisSlot::Scalar { .. } | AxisSlot::Apart { .. }) => Input::Locked(0.0),
                 (true, AxisSlot::Euler { group, angle }) => {
                     Input::Locked(self.rates[group].gradient[angle].dot(self.turning(m, s, group)))
                 }

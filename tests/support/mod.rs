@@ -2,7 +2,9 @@
 #![allow(dead_code)]
 
 use realnoid::math::{M3, Mat3, Quat, S3, V3, Vec3};
-use realnoid::model::{Axis, AxisKind, AxisSlot, Base, Body, Effects, JointType, LinkFrame, LinkInfo, Model};
+use realnoid::model::{
+    Axis, AxisKind, AxisSlot, Base, Body, DriveLimits, Effects, JointType, LinkFrame, LinkInfo, Model, Softness,
+};
 
 /// A small generator with the same numbers everywhere (SplitMix64).
 pub struct Random(pub u64);
@@ -47,7 +49,10 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         nq: 0,
         nv: 0,
         balls: 0,
-        effects: Effects { gravity: true, damping: false, friction: false, limits: false, drives: true },
+        softs: vec![],
+        couplings: vec![],
+        breakables: vec![],
+        effects: Effects { gravity: true, drives: true, ..Effects::NONE },
     };
     m.bodies.push(body(&mut rng, 0, JointType::Revolute));
     m.bodies[0].mass = 0.0;
@@ -114,9 +119,8 @@ fn axis(b: &Body, k: usize) -> Axis {
         slot: AxisSlot::Scalar { q: b.q + k, v: b.v + k },
         lower: f64::NEG_INFINITY,
         upper: f64::INFINITY,
-        max_torque: f64::INFINITY,
-        no_load_speed: f64::INFINITY,
-        max_speed: f64::INFINITY,
+        stop: Softness { erp: 0.2, cfm: 0.0 },
+        drive: DriveLimits::default(),
         damping: 0.0,
         friction: 0.0,
         mode: realnoid::description::DriveMode::Idle,

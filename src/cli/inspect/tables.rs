@@ -60,6 +60,7 @@ fn link_row(frame: &LinkFrame, v: &LinkValues, unit: Unit) -> String {
 
 fn axis_row(m: &Model, a: &Axis) -> String {
     let joint = match a.slot {
+        AxisSlot::Apart { .. } => "apart",
         AxisSlot::Euler { .. } => "3dof",
         AxisSlot::Scalar { v, .. }
             if m.bodies.iter().skip(1).any(|b| b.joint.nv() == 2 && (b.v..b.v + 2).contains(&v)) =>
@@ -75,8 +76,8 @@ fn axis_row(m: &Model, a: &Axis) -> String {
         a.name,
         bound(a.lower),
         bound(a.upper),
-        bound(a.max_torque),
-        bound(a.max_speed),
+        bound(a.drive.max_torque),
+        bound(a.drive.max_speed),
         a.damping,
         a.friction,
         format!("{:?}", a.mode).to_lowercase()

@@ -1,0 +1,57 @@
+//! What bounds a drive (J-13, J-14).
+
+use crate::description::Joint;
+
+/// The drive of one axis as a machine: everything but its command. Units: N·m, rad/s, kg·m²; of a linear axis N, m/s, kg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveLimits {
+    /// J-13 (a): torque at maximum current; +∞ where nothing bounds it.
+    pub max_torque: f64,
+    /// J-13 (b): no-load speed at maximum voltage; +∞ where no drive tag gives it.
+    pub no_load_speed: f64,
+    /// Bound of a servo's speed: the no-load speed or the URDF's velocity limit, whichever is less, else +∞.
+    pub max_speed: f64,
+    /// J-13 (e): least torque that starts the axis. At least the dynamic resistance counts.
+    pub static_resistance: f64,
+    /// J-13 (f): torque lost to friction when turning.
+    pub dynamic_resistance: f64,
+    /// J-13 (g): the motor's terminals are short-circuited while the applied torque is 0.
+    pub short_brake: bool,
+    /// Inertia of the rotor as the axis feels it: rotor inertia × gear ratio².
+    pub rotor_inertia: f64,
+}
+
+impl Default for DriveLimits {
+    /// A drive that nothing bounds, without losses.
+    fn default() -> Self {
+        Self {
+            max_torque: f64::INFINITY,
+            no_load_speed: f64::INFINITY,
+            max_speed: f64::INFINITY,
+            static_resistance: 0.0,
+            dynamic_resistance: 0.0,
+            short_brake: false,
+            rotor_inertia: 0.0,
+        }
+    }
+}
+
+impl DriveLimits {
+    /// From the tag, else from the URDF's limits.
+    pub(super) fn of(joint: &Joint) -> Self {
+        let (drive, limit) = (joint.drive.as_ref(), joint.limit.as_ref());
+        let tag = |value: fn(&crate::description::Drive) -> Option<f64>| drive.and_then(value);
+        let no_load_speed = tag(|d| d.no_load_speed).unwrap_or(f64::INFINITY);
+        let dynamic_resistance = tag(|d| d.dynamic_resistance).unwrap_or(0.0);
+        let gear_ratio = tag(|d| d.gear_ratio).unwrap_or(1.0);
+        Self {
+            max_torque: tag(|d| d.max_torque).or(limit.and_then(|l| l.effort)).unwrap_or(f64::INFINITY),
+            no_load_speed,
+            max_speed: no_load_speed.min(limit.and_then(|l| l.velocity).unwrap_or(f64::INFINITY)),
+            static_resistance: tag(|d| d.static_resistance).unwrap_or(0.0).max(dynamic_resistance),
+            dynamic_resistance,
+            short_brake: drive.is_some_and(|d| d.short_brake),
+            rotor_inertia: tag(|d| d.rotor_inertia).unwrap_or(0.0) * gear_ratio * gear_ratio,
+        }
+    }
+}
