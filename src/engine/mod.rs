@@ -1,6 +1,8 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
+mod midpoint;
 mod rbx;
+mod rk4;
 
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};
 

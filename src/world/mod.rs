@@ -18,10 +18,12 @@ pub use snapshot::Snapshot;
 pub struct Stats {
     /// Steps made.
     pub steps: u64,
-    /// RK4 steps that fell back to semi-implicit Euler.
+    /// RK4 steps that fell back to the implicit midpoint rule.
     pub fallback_steps: u64,
     /// Steps whose axis set did not settle within the iterations.
     pub unsettled_steps: u64,
+    /// How often a step was halved because its iteration did not contract: velocity products of light limbs that whirl.
+    pub halvings: u64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
     pub pole_steps: u64,
     /// Steps whose result was not finite and was not taken. The world stands still from the first one on.
@@ -167,6 +169,7 @@ impl World {
         s.steps += 1;
         s.fallback_steps += u64::from(report.fell_back);
         s.unsettled_steps += u64::from(report.unsettled);
+        s.halvings += u64::from(report.halvings);
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
     }
@@ -178,8 +181,7 @@ impl World {
 
     /// Back to the initial state and time 0; every axis in its mode at start.
     pub fn reset(&mut self) {
-        self.engine.state.copy_from(&self.initial);
-        self.engine.axes.reset();
+        self.engine.restart(&self.initial);
         for (i, axis) in self.model.axes.iter().enumerate() {
             self.commands[i] = match axis.mode {
                 Mode::Idle => AxisCommand::IDLE,
