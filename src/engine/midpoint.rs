@@ -15,6 +15,9 @@ use crate::solver::{AxisCommand, StepStart};
 const TOLERANCE: f64 = 1e-8;
 /// An iteration that shrinks by less than this factor per pass does not contract.
 const CONTRACTION: f64 = 0.7;
+/// When its passes are used up, a step whose middle moves by less than this is taken; one that had enough of them is halved.
+const COARSE: f64 = 1e-6;
+const ENOUGH: u32 = 5;
 /// A step is halved at most this many times.
 const DEEPEST: u32 = 6;
 
@@ -96,7 +99,7 @@ impl Rbx {
         report: &mut StepReport,
     ) -> End {
         let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, mean: true };
-        report.at_pole |= self.axes.prepare(m, &start, m.effects);
+        report.at_pole |= self.axes.prepare(m, &start, s.effects);
         self.qdd.copy_from_slice(&mid.guess);
         self.set_middle(m, mid, s.h);
         let (mut pass, mut last) = (0, f64::INFINITY);
@@ -113,7 +116,11 @@ impl Rbx {
                 return End::NoContraction;
             }
             if !wanted {
-                return End::Unsettled;
+                return match misfits {
+                    0 if moved <= COARSE => End::Converged,
+                    0 if pass >= ENOUGH => End::NoContraction,
+                    _ => End::Unsettled,
+                };
             }
             last = if misfits == 0 { moved } else { f64::INFINITY };
         }
@@ -145,6 +152,7 @@ impl Rbx {
             self.state.v[k] = mid.start.v[k] + change;
             mid.u[k] = mid.start.v[k] + self.axes.weight[k] * change;
         }
+        self.axes.round_speeds(m, &mut self.state.v);
         move_coordinates(m, &mid.start.q, &mid.u, h, &mut self.state.q);
         self.state.read_angles(m);
         if self.axes.is_calm() {

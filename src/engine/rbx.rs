@@ -4,7 +4,7 @@ use super::midpoint::Midpoint;
 use super::rk4::Stages;
 use crate::dynamics::{Workspace, exponential_step, normalize};
 use crate::math::{V3, Vec3};
-use crate::model::{AxisSlot, JointType, Model, rotation};
+use crate::model::{AxisSlot, Effects, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef, StepStart};
 
 /// How the state is advanced.
@@ -181,6 +181,8 @@ pub struct StepSettings {
     pub h: f64,
     /// m/s², world.
     pub gravity: [f64; 3],
+    /// What is simulated.
+    pub effects: Effects,
     /// Passes of the dynamics and the axis set, at most.
     pub passes: u32,
     /// Integrator.
@@ -271,7 +273,7 @@ impl Rbx {
     fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> Outcome {
         let at = self.state.as_ref();
         let start = StepStart { state: at, commands, h: s.h, mean: false };
-        report.at_pole |= self.axes.prepare(m, &start, m.effects);
+        report.at_pole |= self.axes.prepare(m, &start, s.effects);
         let mut passes = 0;
         let settled = loop {
             passes += 1;
@@ -284,6 +286,7 @@ impl Rbx {
         };
         self.axes.finish(m, &self.ws, s.h, &self.qdd);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
+        self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);
         Outcome { passes, settled }
     }
@@ -291,7 +294,7 @@ impl Rbx {
     /// False, with the state as before, if the step is not smooth.
     fn rk4(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> bool {
         let start = StepStart { state: self.state.as_ref(), commands, h: s.h, mean: true };
-        report.at_pole |= self.axes.prepare(m, &start, m.effects);
+        report.at_pole |= self.axes.prepare(m, &start, s.effects);
         if !self.axes.is_smooth(m) {
             return false;
         }

@@ -44,6 +44,24 @@ impl Default for DriveLimits {
 }
 
 impl DriveLimits {
+    /// # Errors
+    /// Names the value that is out of range, and the range.
+    pub fn check(&self) -> Result<(), String> {
+        let ranged = |name: &str, value: f64, ok: bool, range: &str| {
+            if ok { Ok(()) } else { Err(format!("{name} is {value}; it must be {range}")) }
+        };
+        let (a, b, c) = (self.max_torque, self.no_load_speed, self.max_speed);
+        ranged("max_torque", a, a >= 0.0, "0 or more")?;
+        ranged("no_load_speed", b, b > 0.0, "greater than 0")?;
+        ranged("max_speed", c, c > 0.0, "greater than 0")?;
+        let (e, f) = (self.static_resistance, self.dynamic_resistance);
+        ranged("dynamic_resistance", f, (0.0..f64::INFINITY).contains(&f), "0 or more, and finite")?;
+        ranged("static_resistance", e, e >= f && e.is_finite(), "at least the dynamic resistance, and finite")?;
+        let (t, j) = (self.servo_time, self.rotor_inertia);
+        ranged("servo_time", t, t > 0.0 && t.is_finite(), "greater than 0, and finite")?;
+        ranged("rotor_inertia", j, (0.0..f64::INFINITY).contains(&j), "0 or more, and finite")
+    }
+
     /// From the tag, else from the URDF's limits.
     pub(super) fn of(joint: &Joint) -> Self {
         let (drive, limit) = (joint.drive.as_ref(), joint.limit.as_ref());

@@ -141,7 +141,7 @@ impl AxisSet {
                 limits: &self.drives[i],
                 command: start.commands[i],
                 q,
-                stuck: self.memory[i] & FRICTION != 0 && v == 0.0,
+                stuck: self.memory[i] & FRICTION != 0 || v == 0.0,
                 brakes: self.brakes[i],
             };
             self.laws[i] = if self.ungraspable(axis) { Law::default() } else { law(&input, effects, start.h) };

@@ -114,8 +114,8 @@ impl DriveLaw {
     }
 }
 
-/// Speed towards the target: as fast as the error decays with the servo's time constant, and as it can still brake. In
-/// steps of h a brake a leads to rest at the target from the speed `−ah/2 + √((ah/2)² + 2ae)`, the discrete form of √(2ae).
+/// Speed towards the target: as fast as the error e decays with the servo's time constant, and as a brake a can still stop it:
+/// after a step at the speed v there is `e − hv` left, and `v² = 2a (e − hv)` is the fastest that comes to rest there.
 fn approach(input: &AxisInput, torque: f64, h: f64) -> f64 {
     let error = input.command.target - input.q;
     let linear = error / input.limits.servo_time.max(h);
@@ -124,6 +124,6 @@ fn approach(input: &AxisInput, torque: f64, h: f64) -> f64 {
     if mobility == 0.0 || brake <= 0.0 || !brake.is_finite() {
         return linear;
     }
-    let half = 0.5 * brake * h;
-    bounded(linear, (half * half + 2.0 * brake * error.abs()).sqrt() - half)
+    let step = brake * h;
+    bounded(linear, (step * step + 2.0 * brake * error.abs()).sqrt() - step)
 }

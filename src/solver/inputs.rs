@@ -111,6 +111,16 @@ impl AxisSet {
         }
     }
 
+    /// Takes the rounding from the speeds: a standing axis has that of its riser to the last bit, and a sliding one that has
+    /// been slowed down to a knot is not behind it.
+    pub fn round_speeds(&self, m: &Model, v: &mut [f64]) {
+        for (axis, (law, place)) in m.axes.iter().zip(self.laws.iter().zip(&self.place)) {
+            if let AxisSlot::Scalar { v: k, .. } = axis.slot {
+                v[k] = law.rounded(*place, v[k]);
+            }
+        }
+    }
+
     /// The part of ω̇ of a group that the turning of its own axes makes: an angle at constant rate has `g·ω̇ = g·turning`.
     pub(super) fn turning(&self, m: &Model, s: super::StateRef, group: usize) -> V3<f64> {
         let e = &m.eulers[group];

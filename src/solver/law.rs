@@ -245,6 +245,20 @@ impl Law {
         isize::from(above) - isize::from(below)
     }
 
+    /// A speed that fits this place, without the rounding that made it fit only nearly.
+    pub(super) fn rounded(&self, place: usize, v: f64) -> f64 {
+        let j = place / 2;
+        if place % 2 == 1 {
+            return self.knots[j].speed;
+        }
+        if self.smooth() || self.leaves_segment(j, v) != 0 {
+            return v;
+        }
+        let low = if j > 0 { self.knots[j - 1].speed } else { f64::NEG_INFINITY };
+        let high = if j < self.count { self.knots[j].speed } else { f64::INFINITY };
+        v.max(low).min(high)
+    }
+
     /// The neighbouring place; a kink has no place of its own.
     pub(super) fn neighbour(&self, place: usize, side: isize) -> usize {
         let next = place.saturating_add_signed(side);

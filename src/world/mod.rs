@@ -1,15 +1,16 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
+mod drive;
 mod settings;
 mod snapshot;
 
 use crate::dynamics::{Energy, Kinematics, Momentum, energy, kinematics, link_pose, link_twist, momentum};
 use crate::engine::{Rbx, State, StepSettings};
 use crate::math::{Pose, Twist};
-use crate::model::Model;
+use crate::model::{Effects, Model};
 use std::sync::Arc;
 
-pub use crate::solver::{AxisCommand, Mode};
+pub use crate::solver::{AxisCommand, Mode, Work};
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
 
@@ -36,6 +37,7 @@ pub struct World {
     model: Arc<Model>,
     settings: Settings,
     engine: Rbx,
+    effects: Effects,
     initial: State,
     commands: Vec<AxisCommand>,
     kinematics: Kinematics,
@@ -56,6 +58,7 @@ impl World {
         let mut engine = Rbx::new(&model);
         engine.prepare(&model, settings.integrator);
         let mut world = Self {
+            effects: model.effects,
             initial: engine.state.clone(),
             engine,
             commands: vec![AxisCommand::IDLE; model.axes.len()],
@@ -158,6 +161,7 @@ impl World {
         StepSettings {
             h: interval / f64::from(s.steps_per_interval),
             gravity: self.gravity(),
+            effects: self.effects,
             passes: s.solver_iterations,
             integrator: s.integrator,
         }
@@ -176,7 +180,7 @@ impl World {
 
     /// Gravity in force: zero if the effect is off.
     fn gravity(&self) -> [f64; 3] {
-        if self.model.effects.gravity { self.settings.gravity } else { [0.0; 3] }
+        if self.effects.gravity { self.settings.gravity } else { [0.0; 3] }
     }
 
     /// Back to the initial state and time 0; every axis in its mode at start.
@@ -236,9 +240,22 @@ impl World {
         self.stamp_ns as f64 * 1e-9
     }
 
-    /// Kinetic and potential energy, J.
+    /// Kinetic and potential energy, J; rotors count with their speed relative to the joint.
     pub fn energy(&self) -> Energy {
-        energy(&self.model, &self.kinematics, self.gravity())
+        let mut e = energy(&self.model, &self.kinematics, self.gravity());
+        if self.effects.rotor_inertia {
+            for (i, drive) in self.engine.axes.drives.iter().enumerate() {
+                let (_, speed) = self.state().axis(&self.model, i);
+                e.kinetic += 0.5 * drive.rotor_inertia * speed * speed;
+            }
+        }
+        e
+    }
+
+    /// Work of the drives and losses at the axes since the start or the last reset, J. With [`World::energy`] it shows the
+    /// error of the integrator: what the energy has gained beyond `drives − losses`.
+    pub fn work(&self) -> Work {
+        self.engine.axes.work
     }
 
     /// Momentum in the world frame, about the common centre of mass.
