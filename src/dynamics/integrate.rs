@@ -85,8 +85,8 @@ fn floating_step(q: &mut [f64], v: &mut [f64], vdot: &[f64], h: f64) {
     v.copy_from_slice(&[w.x, w.y, w.z, l.x, l.y, l.z]);
 }
 
-/// `q ← q ⊗ exp(a/2)`, then unit length again.
-fn turn(q: &mut [f64], a: V3<f64>) {
+/// Turns a unit quaternion `q` (w, x, y, z) by the rotation vector `a` (rad, child frame).
+pub fn turn(q: &mut [f64], a: V3<f64>) {
     let angle = a.dot(a).sqrt();
     let (s, c) = sin_cos(0.5 * angle);
     let k = if angle > 1e-8 { s / angle } else { 0.5 - angle * angle / 48.0 };

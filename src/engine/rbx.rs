@@ -263,6 +263,9 @@ impl Rbx {
                 None => report.unsettled = !self.euler(m, commands, s, &mut report).settled,
             }
         }
+        if self.axes.push_back(m, &mut self.state.q, &self.state.angles) {
+            self.state.read_angles(m);
+        }
         if !self.state.finite() {
             self.state.copy_from(&self.before);
             report.diverged = true;

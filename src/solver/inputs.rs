@@ -1,7 +1,7 @@
 //! From the places of the axes to the inputs of the hybrid dynamics, and back to torques.
 
 use super::axis_set::AxisSet;
-use crate::dynamics::{DofIn, Workspace};
+use crate::dynamics::{DofIn, Workspace, turn};
 use crate::math::V3;
 use crate::model::{AxisSlot, JointType, Model};
 
@@ -109,6 +109,24 @@ impl AxisSet {
                 AxisSlot::Apart { .. } => {}
             }
         }
+    }
+
+    /// Puts axes that were outside their range back by the share of the way that their stop's ERP takes. True if there were
+    /// any.
+    pub fn push_back(&self, m: &Model, q: &mut [f64], angles: &[[f64; 3]]) -> bool {
+        let mut any = false;
+        for (axis, law) in m.axes.iter().zip(&self.laws).filter(|(_, law)| law.push != 0.0) {
+            any = true;
+            match axis.slot {
+                AxisSlot::Scalar { q: k, .. } => q[k] += law.push,
+                AxisSlot::Euler { group, angle } => {
+                    let e = &m.eulers[group];
+                    turn(&mut q[e.q..e.q + 4], e.directions(angles[group])[angle] * law.push);
+                }
+                AxisSlot::Apart { .. } => {}
+            }
+        }
+        any
     }
 
     /// Takes the rounding from the speeds: a standing axis has that of its riser to the last bit, and a sliding one that has

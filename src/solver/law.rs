@@ -68,6 +68,8 @@ pub struct Law {
     pub(super) segments: [Segment; KNOTS + 1],
     /// By how much static friction exceeds the dynamic one, as long as the axis has not broken loose.
     pub(super) stiction: f64,
+    /// Outside its range: by how much it is put back after the step, rad or m, signed.
+    pub(super) push: f64,
     /// The axis stands in a soft stop: a spring, whose speed is that at the end of the step.
     pub(super) in_soft_stop: bool,
     damping: f64,
@@ -139,15 +141,16 @@ impl Law {
         }
     }
 
-    /// A stop is reached exactly at the end of the step; of a penetration its ERP's share is taken back. A soft one yields
-    /// by its CFM per torque.
+    /// A stop is reached exactly at the end of the step. A soft one yields by its CFM per torque, and its ERP is that of its
+    /// spring. Beyond a hard one the axis may only come back; its ERP's share of the way is a push that gives no speed.
     fn stops(&mut self, input: &AxisInput, h: f64) {
         let (axis, soft) = (input.axis, input.axis.stop.cfm > 0.0);
         let touching = AT_STOP * (1.0 + input.q.abs());
         let room = |gap: f64| match gap {
             _ if gap.abs() <= touching => 0.0,
             _ if gap > 0.0 => gap / h,
-            _ => axis.stop.erp * gap / h,
+            _ if soft => axis.stop.erp * gap / h,
+            _ => 0.0,
         };
         let stiffness = if soft { 1.0 / axis.stop.cfm } else { 0.0 };
         for (gap, side, kind) in [(input.q - axis.lower, -1.0, LOWER), (axis.upper - input.q, 1.0, UPPER)] {
@@ -158,6 +161,9 @@ impl Law {
             if soft && kind == LOWER {
                 self.segments[0].slope += stiffness;
                 self.segments[0].intercept += stiffness * speed;
+            }
+            if !soft && gap < -touching {
+                self.push += side * axis.stop.erp * gap;
             }
             self.in_soft_stop |= soft && gap <= 0.0;
             let wall = if kind == LOWER { WALL_LEFT } else { WALL_RIGHT };
