@@ -83,7 +83,8 @@ fn spin_up() {
 /// The errors fall with h², and with h⁴ under RK4.
 #[test]
 fn spin_up_keeps_the_order() {
-    for (integrator, order) in [(Integrator::ImplicitMidpoint, 2), (Integrator::Rk4, 4), (Integrator::SemiImplicitEuler, 1)]
+    for (integrator, order) in
+        [(Integrator::ImplicitMidpoint, 2), (Integrator::Rk4, 4), (Integrator::SemiImplicitEuler, 1)]
     {
         let error = |h: f64| {
             let mut w = world(&wheel(motor()), h, 0.0);
@@ -169,12 +170,8 @@ fn a_stiff_brake_does_not_ring() {
 fn brake_with_coulomb_torque() {
     let coulomb = 0.02;
     for (brake, h) in [(true, 0.01), (true, 0.001), (false, 0.01), (false, 0.001)] {
-        let drive = DriveLimits {
-            short_brake: brake,
-            static_resistance: coulomb,
-            dynamic_resistance: coulomb,
-            ..motor()
-        };
+        let drive =
+            DriveLimits { short_brake: brake, static_resistance: coulomb, dynamic_resistance: coulomb, ..motor() };
         let (b, start) = (STALL / NO_LOAD, 100.0);
         let (time, angle) = if brake {
             let time = TAU * (1.0 + b * start / coulomb).ln();
@@ -188,7 +185,11 @@ fn brake_with_coulomb_torque() {
         while w.state().axis(w.model(), 0).1 > 0.0 {
             w.advance();
             steps += 1;
-            assert!(w.state().axis(w.model(), 0).1 >= 0.0, "friction has turned the motion around {:?}",w.state().axis(w.model(), 0));
+            assert!(
+                w.state().axis(w.model(), 0).1 >= 0.0,
+                "friction has turned the motion around {:?}",
+                w.state().axis(w.model(), 0)
+            );
         }
         // It stands at the end of the step in which it stops; in that step the way is off by at most v h = (τc/J) h².
         assert!((f64::from(steps) * h - time - 0.5 * h).abs() <= 0.5 * h + 1e-3 * h, "{brake} {h}: {steps} {time}");

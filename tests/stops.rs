@@ -130,7 +130,10 @@ fn a_soft_stop_is_a_spring_and_a_damper() {
                 let (q, speed) = w.state().axis(w.model(), 0);
                 farthest = farthest.max(q - 1.0);
                 let scale = 1e-9 * (1.0 + 5.0 / (k / J).sqrt());
-                assert!((q - 1.0 - x).abs() <= scale && (speed - v).abs() <= 1e-9 * 5.0 + 1e-12 * k.sqrt(), "{k} {d} {h}");
+                assert!(
+                    (q - 1.0 - x).abs() <= scale && (speed - v).abs() <= 1e-9 * 5.0 + 1e-12 * k.sqrt(),
+                    "{k} {d} {h}"
+                );
             }
             assert!(farthest > 0.0);
         }

@@ -1,5 +1,6 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
+mod guard;
 mod midpoint;
 mod rbx;
 mod rk4;

@@ -4,8 +4,8 @@
 //! nothing is left at the no-load speed d: `c (1 − v/d)`, cut off at ±c, where the current limit holds it. That is one
 //! falling curve through all four quadrants; above d the motor brakes.
 
-use super::law::{AxisInput, Knot, SERVO, Segment, WALL_LEFT, WALL_RIGHT, bounded};
 use super::Mode;
+use super::law::{AxisInput, Knot, SERVO, Segment, WALL_LEFT, WALL_RIGHT, bounded};
 
 /// How well a servo can slow its load down, seen in the last step.
 #[derive(Clone, Copy, Debug, Default)]
