@@ -201,7 +201,7 @@ impl Machine {
         l.dynamic_resistance = e.dynamic_resistance.unwrap_or(l.dynamic_resistance);
         self.static_resistance = e.static_resistance.unwrap_or(self.static_resistance);
         l.static_resistance = self.static_resistance;
-        if l.static_resistance < l.dynamic_resistance {
+        if (0.0..l.dynamic_resistance).contains(&l.static_resistance) {
             l.static_resistance = l.dynamic_resistance;
         }
         l.short_brake = e.short_brake.unwrap_or(l.short_brake);

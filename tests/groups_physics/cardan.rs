@@ -1,10 +1,10 @@
 //! A shaft, a cardan, and a second shaft at an angle β: tan θ₂ = tan θ₁ / cos β.
 
-use crate::limbs::{INERTIAL, WIDE, joint, model};
+use crate::limbs::{INERTIAL, WIDE, advance, joint, model, settings, world};
 use realnoid::engine::State;
 use realnoid::math::Vec3;
 use realnoid::model::{Base, Model};
-use realnoid::world::{Settings, World};
+use realnoid::world::{Integrator, Settings, World};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -64,5 +64,44 @@ fn a_cardan_transmits_as_it_must() {
             (slowest, fastest) = (slowest.min(speed), fastest.max(speed));
         }
         assert!((slowest / beta.cos() - 1.0).abs() <= 1e-3 && (fastest * beta.cos() - 1.0).abs() <= 1e-3, "its bounds");
+    }
+}
+
+/// A point mass on a cardan with level axes circles at Ω² = g / (L cos θ).
+#[test]
+fn a_conical_pendulum_on_a_cardan() {
+    const L: f64 = 0.5;
+    let bob = format!(
+        "<inertial><origin xyz='0 0 -{L}'/><mass value='2'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/></inertial>"
+    );
+    let text = [
+        "<robot name='bob'><realnoid version='1'><joint_group name='cross' type='cardan' h='h' p='p'/></realnoid>"
+            .into(),
+        format!("<link name='base'/><link name='pin'/><link name='bob'>{bob}</link>"),
+        joint("h", "revolute", ("base", "pin"), "1 0 0", "xyz='0 0 0'", WIDE),
+        joint("p", "revolute", ("pin", "bob"), "0 1 0", "xyz='0 0 0'", WIDE),
+        "</robot>".to_string(),
+    ];
+    let mut m = Model::clone(&model(&text.concat(), Base::Fixed));
+    m.effects.limits = false;
+    let m = Arc::new(m);
+    for theta in [0.3f64, 0.9] {
+        let omega = (9.80665 / (L * theta.cos())).sqrt();
+        let mut last = f64::INFINITY;
+        for h in [0.002, 0.001] {
+            let start = [(0.0, omega * theta.tan()), (-theta, 0.0)];
+            let mut w = world(&m, settings(Integrator::Rk4, h), &start);
+            advance(&mut w, (1.0 / h) as usize);
+            let shown = w.new_snapshot();
+            let at = shown.link_pose[2] * nalgebra::Point3::new(0.0, 0.0, -L);
+            let (s, c) = omega.sin_cos();
+            let expected = Vec3::new(theta.sin() * c, theta.sin() * s, -theta.cos()) * L;
+            // Of fourth order in the fastest angle; the 1/5! of the leading term is the margin.
+            let rate = omega * theta.tan().max(1.0);
+            let (error, bound) = ((at.coords - expected).norm(), L * rate * (rate * h).powi(4));
+            println!("θ {theta} h {h}: {error:.2e} of {bound:.2e}");
+            assert!(error <= bound && error <= last / 12.0, "θ {theta}: {last} → {error}, bound {bound}");
+            last = error;
+        }
     }
 }
