@@ -197,7 +197,7 @@ pub struct SimulateArgs {
     /// Commands and drive settings over time (YAML): a list of entries {at: seconds, axis: NAME, …}.
     ///
     /// An entry takes mode (idle, torque, servo), torque, speed, target, max_torque, no_load_speed, static_resistance,
-    /// dynamic_resistance, short_brake, rotor_inertia. A mode begins a new command; what an entry does not name stays as it
+    /// dynamic_resistance, short_brake, bandwidth, rotor_inertia. A mode begins a new command; what an entry does not name stays as it
     /// is. Entries are in the order of time; one inside a control interval takes effect with the next interval.
     #[arg(long, value_name = "FILE.yaml")]
     pub script: Option<PathBuf>,

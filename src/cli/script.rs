@@ -6,6 +6,7 @@ use crate::model::DriveLimits;
 use crate::world::{AxisCommand, Mode, World};
 use serde::Deserialize;
 use serde_saphyr::Spanned;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// A time is on a control interval if it is this near to it, in intervals: far more than rounding, far less than a mistake.
@@ -37,6 +38,8 @@ struct Entry {
     dynamic_resistance: Option<f64>,
     /// J-13 g.
     short_brake: Option<bool>,
+    /// Of the servo's position loop, Hz.
+    bandwidth: Option<f64>,
     /// As the axis feels it, kg·m² or kg.
     rotor_inertia: Option<f64>,
 }
@@ -130,13 +133,14 @@ struct Compiler {
 
 impl Compiler {
     fn new(world: &World, d: &Description, interval: f64) -> Self {
-        let machine = |a: &crate::model::Axis| {
+        let machine = |(i, a): (usize, &crate::model::Axis)| {
             let joint = d.joint(&a.name);
             let velocity = joint.and_then(|j| j.limit.as_ref()?.velocity).unwrap_or(f64::INFINITY);
             let given = joint.and_then(|j| j.drive.as_ref()?.static_resistance);
-            Machine { limits: a.drive, velocity, static_resistance: given.unwrap_or(0.0) }
+            let limits = world.drive(i).copied().unwrap_or(a.drive);
+            Machine { limits, velocity, static_resistance: given.unwrap_or(0.0) }
         };
-        let machines = world.model().axes.iter().map(machine).collect();
+        let machines = world.model().axes.iter().enumerate().map(machine).collect();
         Self { trial: world.clone(), commands: world.commands().to_vec(), machines, interval, last: 0.0 }
     }
 
@@ -206,8 +210,10 @@ impl Machine {
         }
         l.short_brake = e.short_brake.unwrap_or(l.short_brake);
         l.rotor_inertia = e.rotor_inertia.unwrap_or(l.rotor_inertia);
-        let named = [e.max_torque, e.no_load_speed, e.static_resistance, e.dynamic_resistance, e.rotor_inertia];
-        let any = e.short_brake.is_some() || named.iter().any(Option::is_some);
+        l.servo_time = e.bandwidth.map_or(l.servo_time, |hertz| 1.0 / (TAU * hertz));
+        let resistances = [e.static_resistance, e.dynamic_resistance];
+        let named = [e.max_torque, e.no_load_speed, e.bandwidth, e.rotor_inertia].into_iter().chain(resistances);
+        let any = e.short_brake.is_some() || named.flatten().next().is_some();
         if !any {
             self.limits = before;
         }

@@ -1,7 +1,9 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
 mod honour;
+mod midpoint;
 mod rbx;
+mod rk4;
 
 pub use honour::not_honoured;
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};

@@ -1,35 +1,28 @@
-//! Changing the machine behind an axis while it runs (J-13 a, b, e, f, g).
+//! Drives that change while the world runs (J-13 a, b, e, f, g).
 
 use super::World;
-use crate::model::DriveLimits;
-use std::sync::Arc;
+use crate::model::{DriveLimits, Effects};
 
 impl World {
-    /// Sets what bounds the drive of an axis; takes effect with the next step.
+    /// The drive of an axis as it is now.
+    pub fn drive(&self, axis: usize) -> Option<&DriveLimits> {
+        self.engine.axes.drives.get(axis)
+    }
+
+    /// Changes the drive of an axis, with effect from the next step; allocates nothing unless it is refused. An effect that
+    /// the scene did not call for when it was loaded (friction, rotor inertia) is switched on with it.
     ///
     /// # Errors
-    /// Says which item is out of range; nothing changes then.
+    /// Says which value is out of range; nothing changes then.
     pub fn set_drive(&mut self, axis: usize, drive: DriveLimits) -> Result<(), String> {
-        let count = self.model.axes.len();
-        if axis >= count {
-            return Err(format!("there is no axis {axis}; there are {count}"));
-        }
-        let positive = [("no_load_speed", drive.no_load_speed), ("max_speed", drive.max_speed)];
-        if let Some((name, x)) = positive.into_iter().find(|(_, x)| x.is_nan() || *x <= 0.0) {
-            return Err(format!("{name} is {x}; it must be greater than 0"));
-        }
-        let finite = [
-            ("static_resistance", drive.static_resistance),
-            ("dynamic_resistance", drive.dynamic_resistance),
-            ("rotor_inertia", drive.rotor_inertia),
-        ];
-        if drive.max_torque.is_nan() || drive.max_torque < 0.0 {
-            return Err(format!("max_torque is {}; it must be 0 or greater", drive.max_torque));
-        }
-        if let Some((name, x)) = finite.into_iter().find(|(_, x)| !x.is_finite() || *x < 0.0) {
-            return Err(format!("{name} is {x}; it must be finite, 0 or greater"));
-        }
-        Arc::make_mut(&mut self.model).axes[axis].drive = drive;
+        let Some(present) = self.engine.axes.drives.get_mut(axis) else {
+            return Err(format!("axis {axis} does not exist; there are {}", self.model.axes.len()));
+        };
+        drive.check()?;
+        *present = drive;
+        let called_for = Effects::called_for(&self.model);
+        self.effects.friction |= drive.static_resistance > 0.0 && !called_for.friction;
+        self.effects.rotor_inertia |= drive.rotor_inertia > 0.0 && !called_for.rotor_inertia;
         Ok(())
     }
 }
