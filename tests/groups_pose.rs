@@ -48,10 +48,10 @@ fn beyond(w: &World, axis: usize) -> Vec<bool> {
 #[test]
 fn from_the_root_side_what_lies_beyond_stays_and_the_rest_moves() {
     for (kind, base) in KINDS.iter().flat_map(|k| [Base::Fixed, Base::Free].map(|b| (k, b))) {
-        for axis in 0..START.len() {
+        for (axis, begin) in START.iter().enumerate() {
             let mut w = start(kind, base);
             let (before, was) = (shown(&w), axes(&w));
-            let target = START[axis].0 - 0.25;
+            let target = begin.0 - 0.25;
             w.set_joint_angle(axis, target, Side::Root).unwrap();
             let after = shown(&w);
             assert_eq!(axes(&w)[axis].0, target, "exactly");
@@ -71,10 +71,10 @@ fn from_the_root_side_what_lies_beyond_stays_and_the_rest_moves() {
 #[test]
 fn from_the_tip_side_only_what_lies_beyond_moves() {
     for kind in KINDS {
-        for axis in 0..START.len() {
+        for (axis, begin) in START.iter().enumerate() {
             let mut w = start(kind, Base::Free);
             let before = shown(&w);
-            w.set_joint_angle(axis, START[axis].0 - 0.25, Side::Tip).unwrap();
+            w.set_joint_angle(axis, begin.0 - 0.25, Side::Tip).unwrap();
             let after = shown(&w);
             for (link, moves) in beyond(&w, axis).into_iter().enumerate() {
                 let (then, now) = (&before.link_pose[link], &after.link_pose[link]);
@@ -88,11 +88,11 @@ fn from_the_tip_side_only_what_lies_beyond_moves() {
 #[test]
 fn root_side_and_back_by_the_tip_side_moves_the_base() {
     for (kind, base) in KINDS.iter().flat_map(|k| [Base::Fixed, Base::Free].map(|b| (k, b))) {
-        for axis in 0..START.len() {
+        for (axis, begin) in START.iter().enumerate() {
             let mut w = start(kind, base);
             let (before, was) = (shown(&w), axes(&w));
-            w.set_joint_angle(axis, START[axis].0 + 0.15, Side::Root).unwrap();
-            w.set_joint_angle(axis, START[axis].0, Side::Tip).unwrap();
+            w.set_joint_angle(axis, begin.0 + 0.15, Side::Root).unwrap();
+            w.set_joint_angle(axis, begin.0, Side::Tip).unwrap();
             let after = shown(&w);
             let motion = after.link_pose[0] * before.link_pose[0].inverse();
             assert!(apart(&motion, &Pose::identity()) > 1e-2, "the base has moved");
