@@ -129,6 +129,27 @@ fn a_moved_fixed_base_is_a_base_elsewhere() {
     }
 }
 
+/// What floats on a fixed base is the base of what hangs on it: it moves, and the fixed base does not.
+#[test]
+fn a_floating_link_is_a_base_of_its_own() {
+    let text = body("3dof", ["0 0 0.2", "0 0 0", "0 0 0"], "");
+    let text = text.replace("name='trunk' type='revolute'", "name='trunk' type='floating'");
+    let m = model(&text, Base::Fixed);
+    let knee = m.axis("knee").unwrap();
+    let mut w = world(&m, settings(Integrator::SemiImplicitEuler, 0.001), &START[1..]);
+    (0..50).for_each(|_| w.advance());
+    let before = shown(&w);
+    w.set_joint_angle(knee, -0.15, Side::Root).unwrap();
+    let after = shown(&w);
+    assert_eq!(before.link_pose[0], after.link_pose[0], "the fixed base");
+    for (link, stays) in beyond(&w, knee).into_iter().enumerate().skip(1) {
+        let moved = apart(&before.link_pose[link], &after.link_pose[link]);
+        assert!(if stays { moved <= EXACT } else { moved > 1e-3 }, "{}: {moved}", m.links[link].name);
+    }
+    assert!(before.link_twist[1].angular.norm() > 1e-3);
+    assert!((before.link_twist[1].angular - after.link_twist[1].angular).norm() <= EXACT, "its twist stays its own");
+}
+
 #[test]
 fn reset_takes_a_moved_base_back_unless_it_was_remembered() {
     for base in [Base::Fixed, Base::Free] {
