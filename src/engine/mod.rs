@@ -1,10 +1,12 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
 mod guard;
+mod honour;
 mod midpoint;
 mod rbx;
 mod rk4;
 
+pub use honour::not_honoured;
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};
 
 /// Names for `--engine` and the parameter `engine`.

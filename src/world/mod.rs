@@ -1,6 +1,7 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
 mod drive;
+mod pose;
 mod settings;
 mod snapshot;
 
@@ -11,6 +12,7 @@ use crate::model::{Effects, Model};
 use std::sync::Arc;
 
 pub use crate::solver::{AxisCommand, Mode, Work};
+pub use pose::Side;
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
 
@@ -40,6 +42,8 @@ pub struct Stats {
 #[derive(Clone, Debug)]
 pub struct World {
     model: Arc<Model>,
+    /// The model as it was before its fixed base was moved, if it was.
+    unmoved: Option<Arc<Model>>,
     settings: Settings,
     engine: Rbx,
     effects: Effects,
@@ -69,6 +73,7 @@ impl World {
             commands: vec![AxisCommand::IDLE; model.axes.len()],
             kinematics: Kinematics::new(&model),
             model,
+            unmoved: None,
             settings,
             interval: 0,
             stamp_ns: 0,
@@ -122,6 +127,11 @@ impl World {
         &self.commands
     }
 
+    /// Per axis, N·m or N: the drive torque really applied in the last step.
+    pub fn efforts(&self) -> &[f64] {
+        &self.engine.axes.effort
+    }
+
     /// The state.
     pub fn state(&self) -> &State {
         &self.engine.state
@@ -138,6 +148,7 @@ impl World {
     pub fn remember(&mut self) {
         self.initial.q.copy_from_slice(&self.engine.state.q);
         self.initial.angles.copy_from_slice(&self.engine.state.angles);
+        self.unmoved = None;
     }
 
     /// Advances one control interval; allocates nothing, cannot panic. A world that has diverged stands still.
@@ -192,6 +203,9 @@ impl World {
 
     /// Back to the initial state and time 0; every axis in its mode at start.
     pub fn reset(&mut self) {
+        if let Some(model) = self.unmoved.take() {
+            self.model = model;
+        }
         self.engine.restart(&self.initial);
         for (i, axis) in self.model.axes.iter().enumerate() {
             self.commands[i] = match axis.mode {
