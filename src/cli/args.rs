@@ -161,7 +161,7 @@ pub struct SimulateArgs {
     /// Solver iterations per step, 1 to 10000; 10 unless the scene says otherwise.
     #[arg(long)]
     pub iterations: Option<u32>,
-    /// semi_implicit_euler or rk4.
+    /// implicit_midpoint, semi_implicit_euler or rk4.
     #[arg(long)]
     pub integrator: Option<String>,
     /// rbx.

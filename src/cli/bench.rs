@@ -115,9 +115,10 @@ fn measure(m: &Arc<Model>, seconds: f64) -> Vec<Row> {
             let _ = aba_fused(m, &mut fused, (&s.q, &s.v), &i.tau, i.gravity, black_box(&mut i.out));
         }));
     }
-    rows.push(step("step", m, (Integrator::SemiImplicitEuler, AxisCommand::IDLE), seconds));
-    rows.push(step("step_servos_hold", m, (Integrator::SemiImplicitEuler, AxisCommand::servo(0.0)), seconds));
+    rows.push(step("step_implicit_midpoint", m, (Integrator::ImplicitMidpoint, AxisCommand::IDLE), seconds));
+    rows.push(step("step_semi_implicit_euler", m, (Integrator::SemiImplicitEuler, AxisCommand::IDLE), seconds));
     rows.push(step("step_rk4", m, (Integrator::Rk4, AxisCommand::IDLE), seconds));
+    rows.push(step("step_servos_hold", m, (Integrator::ImplicitMidpoint, AxisCommand::servo(0.0)), seconds));
     rows
 }
 

@@ -55,7 +55,7 @@ struct WorldSettings {
     time_scale: Option<f64>,
     /// m/s².
     gravity: Option<[f64; 3]>,
-    /// semi_implicit_euler or rk4.
+    /// implicit_midpoint, semi_implicit_euler or rk4.
     integrator: Option<String>,
     /// Effects to switch.
     #[serde(default)]

@@ -90,7 +90,8 @@ impl Script {
         for entry in entries {
             let place = format!("{shown}:{}", entry.referenced.line());
             let event = compiler.event(&entry.value).map_err(|reason| format!("--script {place}: {reason}"))?;
-            script.warnings.extend(oddity(&entry.value, &event, (interval, count)).map(|w| format!("{place}: {w}")));
+            let odd = oddity(&entry.value, &event, (interval, count)).into_iter();
+            script.warnings.extend(odd.chain(compiler.beyond(&event)).map(|w| format!("{place}: {w}")));
             script.events.push(event);
         }
         Ok(script)
@@ -142,6 +143,11 @@ impl Compiler {
         };
         let machines = world.model().axes.iter().enumerate().map(machine).collect();
         Self { trial: world.clone(), commands: world.commands().to_vec(), machines, interval, last: 0.0 }
+    }
+
+    /// What the axis cannot do of its new command.
+    fn beyond(&self, event: &Event) -> Option<String> {
+        event.command.beyond(&self.trial.model().axes[event.axis], self.trial.drive(event.axis)?)
     }
 
     fn event(&mut self, e: &Entry) -> Result<Event, String> {

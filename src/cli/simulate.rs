@@ -51,6 +51,8 @@ pub fn run(args: &SimulateArgs) -> ExitCode {
 struct Outcome {
     /// CPU time of the steps, s.
     cpu: f64,
+    /// Energy at the start, J.
+    energy: f64,
     rows: u64,
     /// Every value looked at was finite.
     finite: bool,
@@ -146,6 +148,7 @@ impl<'a> Plan<'a> {
         let script = args.script.as_deref().map(read).transpose().map_err(usage)?.unwrap_or_default();
         let mut warnings = warnings(&loaded);
         warnings.extend(scene.pending);
+        warnings.extend(beyond(&world));
         warnings.extend(script.warnings.iter().cloned());
         Ok(Self { args, world, script, intervals, every, warnings })
     }
@@ -171,7 +174,8 @@ impl<'a> Plan<'a> {
         progress: &mut Progress,
     ) -> Result<Outcome, RecordError> {
         let peaks = vec![Peak::default(); self.world.model().axes.len()];
-        let mut outcome = Outcome { finite: true, peaks, ..Outcome::default() };
+        let e = self.world.energy();
+        let mut outcome = Outcome { finite: true, energy: e.kinetic + e.potential, peaks, ..Outcome::default() };
         let mut sample = Sample::new(&self.world);
         for interval in 0..=self.intervals {
             let complete = interval == self.intervals;
@@ -198,16 +202,35 @@ impl<'a> Plan<'a> {
         Ok(outcome)
     }
 
+    /// Where the energy (J) went; what is unaccounted for is the error of the integrator.
+    fn ledger(&self, start: f64) -> serde_json::Value {
+        let (e, work, guarded) = (self.world.energy(), self.world.work(), self.world.stats().guarded_energy);
+        let end = e.kinetic + e.potential;
+        json!({
+            "start": start,
+            "end": end,
+            "work_of_drives": work.drives,
+            "losses": work.losses,
+            "unaccounted": end - start - work.drives + work.losses + guarded,
+        })
+    }
+
     fn summary(&self, outcome: &Outcome) -> serde_json::Value {
         let (s, cpu) = (self.world.stats(), outcome.cpu);
         let mut warnings = self.warnings.clone();
         let counted = [
             (
                 s.fallback_steps,
-                "steps were made by semi_implicit_euler, because an axis began or ceased to stand still, a servo was on its \
+                "steps were made by implicit_midpoint, because an axis began or ceased to stand still, a servo was on its \
                  way, or a viscous term was stiff",
             ),
+            (s.halvings, "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same"),
             (s.unsettled_steps, "steps ended before the axis laws had settled: allow more --iterations"),
+            (
+                s.guarded_pieces,
+                "pieces of steps were not resolved by the shortest piece there is: the motion of the limbs was slowed down \
+                 to the energy that drives and weight had paid for (guarded_energy, J); take a finer step",
+            ),
             (s.pole_steps, "steps had a 3dof group at its pole: torques about its angles were bounded there"),
             (s.diverged_steps, "step would have given values that are not finite: the world stood still from there on"),
         ];
@@ -231,6 +254,10 @@ impl<'a> Plan<'a> {
             "stopped": outcome.stopped,
             "fallback_steps": s.fallback_steps,
             "unsettled_steps": s.unsettled_steps,
+            "halvings": s.halvings,
+            "guarded_pieces": s.guarded_pieces,
+            "guarded_energy": s.guarded_energy,
+            "energy": self.ledger(outcome.energy),
             "pole_steps": s.pole_steps,
             "warnings": warnings,
         })
@@ -335,6 +362,12 @@ fn schedule(args: &SimulateArgs, s: &Settings) -> Result<(u64, u64), String> {
         return Err(format!("--every {every}: must be a whole multiple of the control interval{scaled}, {interval} s"));
     }
     Ok(((args.duration / interval).round() as u64, ratio.round() as u64))
+}
+
+/// What the axes cannot do of their commands.
+fn beyond(world: &World) -> Vec<String> {
+    let axes = world.model().axes.iter().enumerate().zip(world.commands());
+    axes.filter_map(|((i, axis), command)| command.beyond(axis, world.drive(i)?)).collect()
 }
 
 fn warnings(loaded: &Loaded) -> Vec<String> {

@@ -33,11 +33,6 @@ pub(super) const PENDING: &[Pending] = &[
     tag("deactivate", "bodies stay active"),
     tag("constraint", "joints do not yield and do not break"),
     attribute("chain", "self_collision", "there is no contact inside a chain yet"),
-    attribute("drive", "static_resistance", "the axis turns without this resistance"),
-    attribute("drive", "dynamic_resistance", "the axis turns without this resistance"),
-    attribute("drive", "short_brake", "the axis is not braked"),
-    attribute("drive", "rotor_inertia", "the motor adds no inertia"),
-    attribute("drive", "gear_ratio", "the motor adds no inertia"),
 ];
 
 /// Adds a note for each row that `element`, an instance of the tag `name`, calls for; each row is told once.

@@ -79,6 +79,7 @@ pub struct Listener {
 }
 
 struct Inbox<'a> {
+    model: &'a Model,
     rules: RefCell<Rules>,
     commands: RefCell<Vec<AxisCommand>>,
     end: RefCell<CommandEnd>,
@@ -91,6 +92,7 @@ impl Listener {
     pub fn run(self, desk: Desk, model: &Model, stop: futures::channel::oneshot::Receiver<()>) -> Desk {
         let axes = model.axes.iter().map(|a| (a.name.as_str(), a.switchable));
         let inbox = Inbox {
+            model,
             rules: RefCell::new(Rules::new(axes, desk.values.allow_mode_switch())),
             commands: RefCell::new(desk.commands),
             end: RefCell::new(desk.end),
@@ -139,6 +141,7 @@ impl Inbox<'_> {
             Ok(()) => {
                 self.end.borrow_mut().command(&commands);
                 self.live.counts.accept(topic);
+                self.warn_of_excess(&commands);
             }
             Err(refusal) => {
                 if self.live.counts.refuse(topic, refusal.kind) {
@@ -146,6 +149,15 @@ impl Inbox<'_> {
                     let rest = "further ones are counted in /diagnostics";
                     self.log.warn(format!("{topic} refused, {kind}: {} ({rest})", refusal.reason));
                 }
+            }
+        }
+    }
+
+    /// Says, once per axis, that a command asks for more than its drive has.
+    fn warn_of_excess(&self, commands: &[AxisCommand]) {
+        for (axis, command) in self.model.axes.iter().zip(commands) {
+            if let Some(excess) = command.beyond(axis, &axis.drive) {
+                self.log.warn_once(&format!("beyond {}", axis.name), format!("{excess} (said once per axis)"));
             }
         }
     }

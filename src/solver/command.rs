@@ -1,6 +1,7 @@
 //! What a controller tells the axes.
 
 pub use crate::description::DriveMode as Mode;
+use crate::model::{Axis, DriveLimits};
 
 /// Inputs of one axis' drive. Units: N·m, rad/s, rad; for a linear axis N, m/s, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +38,27 @@ impl AxisCommand {
             Mode::Torque => finite && !self.contradicts(),
             Mode::Servo => finite && self.target.is_finite(),
         }
+    }
+
+    /// What of it the axis cannot do, and what it does instead; `None` if it can do all of it.
+    pub fn beyond(&self, axis: &Axis, drive: &DriveLimits) -> Option<String> {
+        let name = &axis.name;
+        let beyond = |what: &str, value: f64, bound: f64| {
+            (value.abs() > bound)
+                .then(|| format!("axis '{name}': applied {what} {value} is beyond its maximum: {bound} is applied"))
+        };
+        if self.mode == Mode::Idle {
+            return None;
+        }
+        if self.mode == Mode::Servo && !(axis.lower..=axis.upper).contains(&self.target) {
+            let (low, high) = (axis.lower, axis.upper);
+            return Some(format!(
+                "axis '{name}': servo target {} is outside its range {low} to {high}: it will push against its stop",
+                self.target
+            ));
+        }
+        let speed = if self.mode == Mode::Servo { drive.max_speed } else { drive.no_load_speed };
+        beyond("torque", self.torque, drive.max_torque).or_else(|| beyond("speed", self.speed, speed))
     }
 
     /// applied torque and applied speed, in torque mode, that have no meaning together: of opposite sign, or torque

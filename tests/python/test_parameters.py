@@ -28,7 +28,7 @@ def test_describe_tells_text_unit_range_and_read_only(bench):
     assert (steps.integer_range[0].from_value, steps.integer_range[0].to_value) == (1, 1000)
     assert (scale.floating_point_range[0].from_value, scale.floating_point_range[0].to_value) == (0.0, 100.0)
     assert axes.read_only and base.read_only and not steps.read_only
-    assert "semi_implicit_euler | rk4" in integrator.additional_constraints
+    assert "implicit_midpoint | semi_implicit_euler | rk4" in integrator.additional_constraints
 
 
 def test_set_takes_effect_and_is_announced(bench):
@@ -53,7 +53,7 @@ REFUSED = [
     ("time_scale", float("nan"), "NaN"),
     ("control_interval", 0.0, "1e-6 … 1.0 s"),
     ("gravity", [0.0, 0.0], "3 finite numbers"),
-    ("integrator", "rk45", "semi_implicit_euler | rk4"),
+    ("integrator", "rk45", "implicit_midpoint | semi_implicit_euler | rk4"),
     ("time_scale", 1, "is of type double, 1 is of type integer"),
     ("base", "free", "at start only"),
     ("axes", ["a"], "read-only"),

@@ -6,8 +6,8 @@ use crate::ros::exchange::Pace;
 use crate::world::{Integrator, Settings};
 use ros2_client::ParameterValue as V;
 
-/// Names of the integrators, in the order of [`integrator`].
-pub(super) const INTEGRATORS: [&str; 2] = ["semi_implicit_euler", "rk4"];
+/// Names of the integrators; the first one is the default.
+pub(super) const INTEGRATORS: [&str; 3] = [Integrator::NAMES[0].0, Integrator::NAMES[1].0, Integrator::NAMES[2].0];
 
 /// Every parameter with a value that its definition accepts.
 #[derive(Clone, Debug)]
@@ -88,7 +88,7 @@ impl Values {
             solver_iterations: self.integer("solver_iterations") as u32,
             time_scale: self.double("time_scale"),
             gravity,
-            integrator: integrator(self.text("integrator")),
+            integrator: Integrator::by_name(self.text("integrator")).unwrap_or_default(),
         };
         Pace {
             settings,
@@ -145,10 +145,6 @@ impl Values {
     fn text(&self, name: &str) -> &str {
         if let V::String(s) = self.value(name) { s } else { "" }
     }
-}
-
-fn integrator(name: &str) -> Integrator {
-    if name == INTEGRATORS[1] { Integrator::Rk4 } else { Integrator::SemiImplicitEuler }
 }
 
 /// On the command line and in YAML, `1` may stand for `1.0`.
