@@ -132,6 +132,7 @@ fn properties(bodies: &[LinkBody]) -> Vec<MassProperties> {
 
 /// The joint that carries no inertia, or the root link of a free base, found by the link on its body.
 fn singular_finding(d: &Description, m: &Model, body: usize) -> Finding {
+    let body = carrier(m, body);
     let carried = |frame: &LinkFrame| matches!(frame, LinkFrame::OnBody { body: b, .. } if *b == body);
     let link = m.links.iter().position(|l| carried(&l.frame));
     let moving = m.links.iter().position(|l| carried(&l.frame) && !l.fixed);
@@ -150,4 +151,11 @@ fn singular_finding(d: &Description, m: &Model, body: usize) -> Finding {
         at,
         mend: "give this link, or those fixed to it, mass and inertia, or make the joint fixed".into(),
     }
+}
+
+/// The body itself, or, for a massless one that a soft joint adds, the one that the joint carries.
+fn carrier(m: &Model, body: usize) -> usize {
+    let has_link = |b: usize| m.links.iter().any(|l| matches!(l.frame, LinkFrame::OnBody { body, .. } if body == b));
+    let outwards = |b: &usize| m.bodies.iter().skip(*b + 1).position(|next| next.parent == *b).map(|n| b + 1 + n);
+    std::iter::successors(Some(body), outwards).find(|b| has_link(*b)).unwrap_or(body)
 }

@@ -31,7 +31,6 @@ pub(super) const PENDING: &[Pending] = &[
     tag("surface", "there is no contact yet"),
     tag("damping", "bodies are not damped"),
     tag("deactivate", "bodies stay active"),
-    tag("constraint", "joints do not yield and do not break"),
     tag("chain", "there is no contact inside a chain yet"),
     attribute("drive", "static_resistance", "the axis turns without this resistance"),
     attribute("drive", "dynamic_resistance", "the axis turns without this resistance"),

@@ -52,9 +52,9 @@ impl<T: crate::math::Real> DofIn<T> {
     pub fn implicit(tau: T, diagonal: T) -> Self {
         Self { diagonal, plain: false, ..Self::free(tau) }
     }
-    /// Locked to an acceleration.
+    /// Locked to an acceleration. The diagonal has no effect then but to keep a division finite where nothing has inertia.
     #[inline(always)]
     pub fn locked(acceleration: T) -> Self {
-        Self { tau: T::of(0.0), diagonal: T::of(0.0), free: T::of(0.0), acceleration, plain: false }
+        Self { tau: T::of(0.0), diagonal: T::of(1.0), free: T::of(0.0), acceleration, plain: false }
     }
 }

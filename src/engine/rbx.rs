@@ -260,7 +260,7 @@ impl Rbx {
 
     /// False, with the state as before, if the step is not smooth.
     fn rk4(&mut self, m: &Model, s: &StepSettings) -> bool {
-        if !self.axes.is_smooth() {
+        if !m.softs.is_empty() || !self.axes.is_smooth() {
             return false;
         }
         let Some(mut st) = self.stages.take() else { return false };

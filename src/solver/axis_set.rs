@@ -116,6 +116,7 @@ impl AxisSet {
         qdd: &mut [f64],
     ) -> Outcome {
         let (mut best, mut patience, mut done) = (usize::MAX, PATIENCE, 0);
+        super::soft::write(m, ws, s, h);
         loop {
             self.write_inputs(m, ws, h);
             aba_hybrid(m, ws, (s.q, s.v), gravity, qdd);

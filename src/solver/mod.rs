@@ -7,6 +7,7 @@ mod axis_set;
 mod command;
 mod law;
 mod smooth;
+mod soft;
 
 pub use axis_set::{AxisSet, Outcome, StateRef};
 pub use command::{AxisCommand, Mode};

@@ -7,6 +7,7 @@ mod names;
 mod ranges;
 mod rigid;
 mod sides;
+mod softness;
 mod tree;
 
 use super::Description;
@@ -26,6 +27,7 @@ pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints
     groups::check(d, tags, report);
     ranges::check(d, report);
     sides::check(d, report);
+    softness::check(d, report);
 }
 
 fn place_of_link(link: &Link) -> Place {
