@@ -2,6 +2,7 @@
 
 use crate::description::{self, Description, Finding, Severity};
 use crate::dynamics::singular_axes;
+use crate::engine::{State, come_apart};
 use crate::mass::{LinkBody, MassProperties, link_bodies, with_inertials};
 use crate::math::Pose;
 use crate::model::{Base, LinkFrame, Model};
@@ -121,7 +122,10 @@ pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, 
         let model = Model::build(&d, &simulated, base, base_pose);
         let singular = singular_axes(&model);
         findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
-        singular.is_empty().then_some((d, bodies, model))
+        let unsound = if singular.is_empty() { unsound_breaks(&d, &model) } else { vec![] };
+        let sound = singular.is_empty() && unsound.is_empty();
+        findings.extend(unsound);
+        sound.then_some((d, bodies, model))
     });
     Ok(Examined { file, text, findings, robot, meshes })
 }
@@ -158,4 +162,25 @@ fn carrier(m: &Model, body: usize) -> usize {
     let has_link = |b: usize| m.links.iter().any(|l| matches!(l.frame, LinkFrame::OnBody { body, .. } if body == b));
     let outwards = |b: &usize| m.bodies.iter().skip(*b + 1).position(|next| next.parent == *b).map(|n| b + 1 + n);
     std::iter::successors(Some(body), outwards).find(|b| has_link(*b)).unwrap_or(body)
+}
+
+/// Joints whose break would leave something that cannot be simulated.
+fn unsound_breaks(d: &Description, m: &Model) -> Vec<Finding> {
+    let unsound = |body| !singular_axes(&come_apart(m, &State::initial(m), body).0).is_empty();
+    let found = m.breakables.iter().filter(|b| unsound(b.body)).map(|b| Finding {
+        severity: Severity::Error,
+        code: "singular-break",
+        message:
+            "once this joint has come apart, something is left that has no inertia in a direction in which it moves"
+                .into(),
+        element: format!("joint '{}'", b.joint),
+        at: d
+            .joints
+            .iter()
+            .find(|j| j.name == b.joint)
+            .and_then(|j| j.constraint.as_ref())
+            .map_or_else(Default::default, |c| c.at),
+        mend: "give the links on both sides of the joint mass and inertia, or take the break_threshold out".into(),
+    });
+    found.collect()
 }

@@ -13,6 +13,7 @@ mod eliminate;
 mod energy;
 mod integrate;
 mod joint;
+mod joint_force;
 mod kinematics;
 mod rnea;
 
@@ -23,7 +24,8 @@ pub use crba::crba;
 pub use energy::{Energy, Momentum, energy, momentum};
 pub use integrate::{coordinate_rates, exponential_step, normalize};
 pub use joint::joint_transform;
-pub use kinematics::{Kinematics, kinematics, link_pose, link_twist};
+pub use joint_force::JointForces;
+pub use kinematics::{Kinematics, body_pose, kinematics, link_pose, link_twist};
 pub use rnea::rnea;
 
 /// Inputs of one velocity coordinate to the hybrid dynamics: a free one gets a torque, a locked one an acceleration.

@@ -1,7 +1,11 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
+mod apart;
+mod breaking;
 mod rbx;
 
+pub use apart::come_apart;
+pub use breaking::{BreakWatch, Overload};
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};
 
 /// Names for `--engine` and the parameter `engine`.

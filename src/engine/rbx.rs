@@ -2,7 +2,7 @@
 
 use crate::dynamics::{Workspace, aba_hybrid, coordinate_rates, exponential_step, normalize};
 use crate::math::{V3, Vec3};
-use crate::model::{AxisSlot, JointType, Model, rotation};
+use crate::model::{AxisSlot, Base, Body, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef};
 
 /// How the state is advanced.
@@ -125,7 +125,7 @@ impl State {
 
     /// Sets the base of a free robot: position (m) and unit quaternion (x, y, z, w) in the world.
     pub fn set_base_pose(&mut self, m: &Model, xyz: [f64; 3], xyzw: [f64; 4]) {
-        if let Some(b) = m.bodies.get(1).filter(|b| b.joint == JointType::Floating && b.parent == 0) {
+        if let Some(b) = free_base(m) {
             self.q[b.q..b.q + 3].copy_from_slice(&xyz);
             self.q[b.q + 3..b.q + 7].copy_from_slice(&[xyzw[3], xyzw[0], xyzw[1], xyzw[2]]);
             normalize(&mut self.q[b.q + 3..b.q + 7]);
@@ -134,7 +134,7 @@ impl State {
 
     /// Sets the twist of a free base, in the base frame.
     pub fn set_base_twist(&mut self, m: &Model, angular: Vec3, linear: Vec3) {
-        if let Some(b) = m.bodies.get(1).filter(|b| b.joint == JointType::Floating && b.parent == 0) {
+        if let Some(b) = free_base(m) {
             for k in 0..3 {
                 (self.v[b.v + k], self.v[b.v + 3 + k]) = (angular[k], linear[k]);
             }
@@ -162,6 +162,11 @@ impl State {
     fn finite(&self) -> bool {
         self.q.iter().chain(&self.v).all(|x| x.is_finite())
     }
+}
+
+/// The body of a free base. On a fixed one, what floats on the world has come off.
+fn free_base(m: &Model) -> Option<&Body> {
+    m.bodies.get(1).filter(|b| m.base == Base::Free && b.joint == JointType::Floating && b.parent == 0)
 }
 
 /// What one step needs to know.

@@ -89,9 +89,11 @@ impl AxisSet {
         at_pole
     }
 
-    /// At the pole of a group, H has no torque of its own: it turns about the same line as B.
+    /// At the pole of a group, H has no torque of its own: it turns about the same line as B. Nothing acts on an axis whose
+    /// joint has come apart.
     fn ungraspable(&self, axis: &Axis) -> bool {
-        matches!(axis.slot, AxisSlot::Euler { group, angle: 0 } if self.rates[group].at_pole)
+        matches!(axis.slot, AxisSlot::Apart { .. })
+            || matches!(axis.slot, AxisSlot::Euler { group, angle: 0 } if self.rates[group].at_pole)
     }
 
     pub(super) fn axis_state(&self, m: &Model, axis: &Axis, s: StateRef) -> (f64, f64) {

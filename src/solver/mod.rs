@@ -6,6 +6,7 @@
 mod axis_set;
 mod command;
 mod law;
+mod refit;
 mod smooth;
 mod soft;
 

@@ -1,5 +1,6 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
+mod breaking;
 mod settings;
 mod snapshot;
 
@@ -10,6 +11,7 @@ use crate::model::Model;
 use std::sync::Arc;
 
 pub use crate::solver::{AxisCommand, Mode};
+pub use breaking::Broken;
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
 
@@ -31,7 +33,9 @@ pub struct Stats {
 /// One simulated world. A clone made between intervals goes on with the same bits.
 #[derive(Clone, Debug)]
 pub struct World {
+    /// What is left of the robot.
     model: Arc<Model>,
+    breaking: breaking::Breaking,
     settings: Settings,
     engine: Rbx,
     initial: State,
@@ -58,6 +62,7 @@ impl World {
             engine,
             commands: vec![AxisCommand::IDLE; model.axes.len()],
             kinematics: Kinematics::new(&model),
+            breaking: breaking::Breaking::new(&model),
             model,
             settings,
             interval: 0,
@@ -69,7 +74,7 @@ impl World {
         Ok(world)
     }
 
-    /// The model.
+    /// The model; once joints have come apart ([`World::broken`]), what is left of it: the same axes and links, other bodies.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
@@ -117,20 +122,26 @@ impl World {
         &self.engine.state
     }
 
-    /// Puts the world into a state, which also becomes the one that [`World::reset`] goes back to.
+    /// Puts the world into a state of the model with all its joints, which also becomes the one that [`World::reset`] goes back to.
     pub fn set_initial_state(&mut self, state: State) {
         self.initial = state;
         self.reset();
     }
 
     /// Remembers where everything is now as the state that [`World::reset`] goes back to (B-13, B-14): poses
-    /// and angles; the velocities at start stay what they were.
-    pub fn remember(&mut self) {
+    /// and angles; the velocities at start stay what they were. `false`, and nothing is remembered, while a joint is apart: the
+    /// initial state is one of the whole robot.
+    pub fn remember(&mut self) -> bool {
+        if !self.broken().is_empty() {
+            return false;
+        }
         self.initial.q.copy_from_slice(&self.engine.state.q);
         self.initial.angles.copy_from_slice(&self.engine.state.angles);
+        true
     }
 
-    /// Advances one control interval; allocates nothing, cannot panic. A world that has diverged stands still.
+    /// Advances one control interval; allocates nothing but when a joint comes apart, cannot panic. A world that has diverged
+    /// stands still.
     pub fn advance(&mut self) {
         let scaled = self.settings.control_interval_ns as f64 * self.settings.time_scale + self.rest_ns;
         let whole = scaled.floor();
@@ -141,11 +152,13 @@ impl World {
             return;
         }
         let step = self.step_settings();
-        for _ in 0..self.settings.steps_per_interval {
+        for to_come in (0..self.settings.steps_per_interval).rev() {
             if self.stats.diverged_steps > 0 {
                 break;
             }
+            self.watch_joints();
             self.step(&step);
+            self.break_joints(&step, self.time() - f64::from(to_come) * step.h);
         }
         self.update();
     }
@@ -176,8 +189,9 @@ impl World {
         if self.model.effects.gravity { self.settings.gravity } else { [0.0; 3] }
     }
 
-    /// Back to the initial state and time 0; every axis in its mode at start.
+    /// Back to the initial state and time 0; every axis in its mode at start, every joint whole. Allocates only if one was apart.
     pub fn reset(&mut self) {
+        self.mend_joints();
         self.engine.state.copy_from(&self.initial);
         self.engine.axes.reset();
         for (i, axis) in self.model.axes.iter().enumerate() {
@@ -205,6 +219,8 @@ impl World {
             effort: vec![0.0; axes],
             link_pose: vec![Pose::identity(); links],
             link_twist: vec![Twist::default(); links],
+            cut_off: vec![false; links],
+            broken: Vec::with_capacity(self.breaking.intact.breakables.len()),
             ..Snapshot::default()
         };
         self.write_snapshot(&mut s);
@@ -221,11 +237,14 @@ impl World {
         s.effort.copy_from_slice(&self.engine.axes.effort);
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
+            s.cut_off[link] = link != m.root_link && m.links[link].parent.is_none();
             s.link_twist[link] = link_twist(m, &self.kinematics, (&state.q, &state.v), &state.angles, link);
         }
         let e = self.energy();
         (s.kinetic_energy, s.potential_energy) = (e.kinetic, e.potential);
         s.stats = self.stats;
+        s.broken.clear();
+        s.broken.extend_from_slice(self.broken());
         s.finite = self.stats.diverged_steps == 0;
     }
 
