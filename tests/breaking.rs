@@ -157,10 +157,10 @@ fn what_came_off_falls() {
             assert!((fallen - exact).abs() < 1e-12, "{kind} {t}: {fallen} {exact}");
             assert!((fallen - 0.5 * G * t * t).abs() < 0.5 * G * t * H * (1.0 + 1e-9), "{kind} {t}");
         }
-        for axis in 0..m.axes.len() {
+        for (axis, position) in positions.iter().enumerate() {
             assert!(matches!(w.model().axes[axis].slot, AxisSlot::Apart { .. }), "{kind} axis {axis}");
-            assert_eq!(w.state().axis(w.model(), axis), (positions[axis], 0.0), "{kind}");
-            assert!(positions[axis].abs() < 1e-15, "{kind}");
+            assert_eq!(w.state().axis(w.model(), axis), (*position, 0.0), "{kind}");
+            assert!(position.abs() < 1e-15, "{kind}");
         }
     }
 }
