@@ -21,10 +21,10 @@ pub struct BreakWatch {
 }
 
 impl BreakWatch {
-    /// Room for this model; `None` if none of its joints breaks, or the effect is off.
+    /// Room for this model; `None` if none of its joints breaks.
     pub fn new(m: &Model) -> Option<Self> {
-        let wanted = m.effects.breaking && !m.breakables.is_empty();
-        wanted.then(|| Self { forces: JointForces::new(m), overloads: Vec::with_capacity(m.breakables.len()) })
+        (!m.breakables.is_empty())
+            .then(|| Self { forces: JointForces::new(m), overloads: Vec::with_capacity(m.breakables.len()) })
     }
 
     /// Takes the state before a step.

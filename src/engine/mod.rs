@@ -2,7 +2,9 @@
 
 mod apart;
 mod breaking;
+mod midpoint;
 mod rbx;
+mod rk4;
 
 pub use apart::come_apart;
 pub use breaking::{BreakWatch, Overload};

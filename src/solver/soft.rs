@@ -7,22 +7,27 @@
 //! ```
 //!
 //! which is a spring k = ERP/(CFM h) with a damper d = (1 − ERP)/CFM, taken by implicit Euler: −k (e + h v⁺) − d v⁺; so
-//! ERP = h k/(h k + d) and CFM = 1/(h k + d). The damping is on the diagonal of the mass matrix; no step is too long for it.
+//! ERP = h k/(h k + d) and CFM = 1/(h k + d). A part of a step keeps the spring and the damper of the whole one. The damping
+//! is on the diagonal of the mass matrix; no step is too long for it.
 
-use super::StateRef;
+use super::StepStart;
 use crate::dynamics::{DofIn, Workspace};
-use crate::model::{Model, SoftDof};
+use crate::model::{Effects, Model, SoftDof};
 
-/// Hands the directions in which joints yield to the hybrid dynamics of a step of `h` seconds. They are held where they are
-/// if the effect is off.
-pub(super) fn write(m: &Model, ws: &mut Workspace<f64>, s: StateRef, h: f64) {
+/// Hands the directions in which joints yield to the hybrid dynamics, for all passes of a step, which may be a part of one of
+/// `whole` seconds. They are held where they are if the effect is off.
+pub fn write_softs(m: &Model, ws: &mut Workspace<f64>, start: &StepStart, effects: Effects, whole: f64) {
     for soft in &m.softs {
-        let yields = m.effects.compliance && soft.softness.cfm > 0.0;
-        ws.dofs[soft.v] = if yields { law(soft, s, h) } else { DofIn::locked(-s.v[soft.v] / h) };
+        let yields = effects.compliance && soft.softness.cfm > 0.0;
+        ws.dofs[soft.v] =
+            if yields { law(soft, start, whole) } else { DofIn::locked(-start.state.v[soft.v] / start.h) };
     }
 }
 
-fn law(soft: &SoftDof, s: StateRef, h: f64) -> DofIn<f64> {
-    let (erp, cfm) = (soft.softness.erp, soft.softness.cfm);
-    DofIn::implicit(-(erp / (cfm * h) * s.q[soft.q] + s.v[soft.v] / cfm), h / cfm)
+fn law(soft: &SoftDof, start: &StepStart, whole: f64) -> DofIn<f64> {
+    let (erp, cfm, h) = (soft.softness.erp, soft.softness.cfm, start.h);
+    let (e, v) = (start.state.q[soft.q], start.state.v[soft.v]);
+    // h k + d; exactly 1/cfm for a whole step.
+    let damping = (1.0 - erp * (1.0 - h / whole)) / cfm;
+    DofIn::implicit(-(erp / (cfm * whole) * e + damping * v), h * damping)
 }

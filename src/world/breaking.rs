@@ -1,7 +1,7 @@
 //! Joints that come apart while the world runs (J-18).
 
 use super::World;
-use crate::engine::{BreakWatch, Rbx, StepSettings, come_apart};
+use crate::engine::{BreakWatch, StepSettings, come_apart};
 use crate::model::Model;
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ impl World {
 
     /// Before a step.
     pub(super) fn watch_joints(&mut self) {
-        if let Some(watch) = &mut self.breaking.watch {
+        if let Some(watch) = self.breaking.watch.as_mut().filter(|_| self.effects.breaking) {
             watch.begin(&self.model, &self.engine.state);
         }
     }
@@ -56,7 +56,7 @@ impl World {
     /// After a step that ended at `time` (s): joints that carried more than their threshold come apart. Allocates if, and
     /// only if, one does.
     pub(super) fn break_joints(&mut self, step: &StepSettings, time: f64) {
-        let Some(watch) = &mut self.breaking.watch else { return };
+        let Some(watch) = self.breaking.watch.as_mut().filter(|_| self.effects.breaking) else { return };
         let overloads = watch.end(&self.model, &self.engine.state, step.gravity, step.h);
         if overloads.is_empty() {
             return;
@@ -77,15 +77,14 @@ impl World {
         self.take(Arc::new(model));
     }
 
-    /// Goes back to the model with all its joints; the state is set after that.
+    /// Goes back to the model with all its joints.
     pub(super) fn mend_joints(&mut self) {
         if self.breaking.broken.is_empty() {
             return;
         }
         self.breaking.broken.clear();
         let intact = self.breaking.intact.clone();
-        self.engine = Rbx::new(&intact);
-        self.engine.prepare(&intact, self.settings.integrator);
+        self.engine.refit(&intact, self.initial.clone(), self.settings.integrator);
         self.take(intact);
     }
 

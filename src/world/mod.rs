@@ -1,16 +1,17 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
 mod breaking;
+mod drive;
 mod settings;
 mod snapshot;
 
 use crate::dynamics::{Energy, Kinematics, Momentum, energy, kinematics, link_pose, link_twist, momentum};
 use crate::engine::{Rbx, State, StepSettings};
 use crate::math::{Pose, Twist};
-use crate::model::Model;
+use crate::model::{Effects, Model};
 use std::sync::Arc;
 
-pub use crate::solver::{AxisCommand, Mode};
+pub use crate::solver::{AxisCommand, Mode, Work};
 pub use breaking::Broken;
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
@@ -20,10 +21,12 @@ pub use snapshot::Snapshot;
 pub struct Stats {
     /// Steps made.
     pub steps: u64,
-    /// RK4 steps that fell back to semi-implicit Euler.
+    /// RK4 steps that fell back to the implicit midpoint rule.
     pub fallback_steps: u64,
     /// Steps whose axis set did not settle within the iterations.
     pub unsettled_steps: u64,
+    /// How often a step was halved because its iteration did not contract: velocity products of light limbs that whirl.
+    pub halvings: u64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
     pub pole_steps: u64,
     /// Steps whose result was not finite and was not taken. The world stands still from the first one on.
@@ -38,6 +41,7 @@ pub struct World {
     breaking: breaking::Breaking,
     settings: Settings,
     engine: Rbx,
+    effects: Effects,
     initial: State,
     commands: Vec<AxisCommand>,
     kinematics: Kinematics,
@@ -58,6 +62,7 @@ impl World {
         let mut engine = Rbx::new(&model);
         engine.prepare(&model, settings.integrator);
         let mut world = Self {
+            effects: model.effects,
             initial: engine.state.clone(),
             engine,
             commands: vec![AxisCommand::IDLE; model.axes.len()],
@@ -169,6 +174,7 @@ impl World {
         StepSettings {
             h: interval / f64::from(s.steps_per_interval),
             gravity: self.gravity(),
+            effects: self.effects,
             passes: s.solver_iterations,
             integrator: s.integrator,
         }
@@ -180,20 +186,20 @@ impl World {
         s.steps += 1;
         s.fallback_steps += u64::from(report.fell_back);
         s.unsettled_steps += u64::from(report.unsettled);
+        s.halvings += u64::from(report.halvings);
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
     }
 
     /// Gravity in force: zero if the effect is off.
     fn gravity(&self) -> [f64; 3] {
-        if self.model.effects.gravity { self.settings.gravity } else { [0.0; 3] }
+        if self.effects.gravity { self.settings.gravity } else { [0.0; 3] }
     }
 
     /// Back to the initial state and time 0; every axis in its mode at start, every joint whole. Allocates only if one was apart.
     pub fn reset(&mut self) {
         self.mend_joints();
-        self.engine.state.copy_from(&self.initial);
-        self.engine.axes.reset();
+        self.engine.restart(&self.initial);
         for (i, axis) in self.model.axes.iter().enumerate() {
             self.commands[i] = match axis.mode {
                 Mode::Idle => AxisCommand::IDLE,
@@ -253,9 +259,22 @@ impl World {
         self.stamp_ns as f64 * 1e-9
     }
 
-    /// Kinetic and potential energy, J.
+    /// Kinetic and potential energy, J; rotors count with their speed relative to the joint.
     pub fn energy(&self) -> Energy {
-        energy(&self.model, &self.kinematics, self.gravity())
+        let mut e = energy(&self.model, &self.kinematics, self.gravity());
+        if self.effects.rotor_inertia {
+            for (i, drive) in self.engine.axes.drives.iter().enumerate() {
+                let (_, speed) = self.state().axis(&self.model, i);
+                e.kinetic += 0.5 * drive.rotor_inertia * speed * speed;
+            }
+        }
+        e
+    }
+
+    /// Work of the drives and losses at the axes since the start or the last reset, J. With [`World::energy`] it shows the
+    /// error of the integrator: what the energy has gained beyond `drives − losses`.
+    pub fn work(&self) -> Work {
+        self.engine.axes.work
     }
 
     /// Momentum in the world frame, about the common centre of mass.
