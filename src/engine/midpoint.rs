@@ -81,6 +81,7 @@ impl Rbx {
                 End::Unsettled | End::NoContraction => report.unsettled = true,
             }
             self.axes.finish(m, &self.ws, part.h, &self.qdd);
+            self.axes.add_soft_work(m, &self.ws, &mid.start.v, (part.h, &self.qdd));
             self.take(m, mid, part.h);
             done += piece;
             // Back to longer pieces where they fit.

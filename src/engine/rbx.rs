@@ -298,6 +298,7 @@ impl Rbx {
             }
         };
         self.axes.finish(m, &self.ws, s.h, &self.qdd);
+        self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);

@@ -10,7 +10,7 @@
 //! ERP = h k/(h k + d) and CFM = 1/(h k + d). A part of a step keeps the spring and the damper of the whole one. The damping
 //! is on the diagonal of the mass matrix; no step is too long for it.
 
-use super::StepStart;
+use super::{AxisSet, StepStart};
 use crate::dynamics::{DofIn, Workspace};
 use crate::model::{Effects, Model, SoftDof};
 
@@ -30,4 +30,16 @@ fn law(soft: &SoftDof, start: &StepStart, whole: f64) -> DofIn<f64> {
     // h k + d; exactly 1/cfm for a whole step.
     let damping = (1.0 - erp * (1.0 - h / whole)) / cfm;
     DofIn::implicit(-(erp / (cfm * whole) * e + damping * v), h * damping)
+}
+
+impl AxisSet {
+    /// Adds the work of a step from the velocities `v` with these accelerations to what was taken from the robot: what a spring
+    /// stores, it may give back.
+    pub fn add_soft_work(&mut self, m: &Model, ws: &Workspace<f64>, v: &[f64], (h, qdd): (f64, &[f64])) {
+        for soft in &m.softs {
+            let (input, a) = (&ws.dofs[soft.v], qdd[soft.v]);
+            let force = if input.free > 0.0 { input.tau - input.diagonal * a } else { ws.reaction[soft.v] };
+            self.work.losses -= force * h * (v[soft.v] + 0.5 * h * a);
+        }
+    }
 }
