@@ -1,13 +1,14 @@
 //! Soft joints (J-18): CFM and ERP of the joint itself against springs and dampers in closed form.
 #![allow(clippy::unwrap_used)] // a test may panic
 
-use realnoid::cli::load::{Source, load};
+mod support;
+
 use realnoid::engine::State;
 use realnoid::math::Vec3;
 use realnoid::model::{Base, Model};
 use realnoid::world::{Integrator, Settings, World};
-use std::io::Write;
 use std::sync::Arc;
+use support::urdf;
 
 const MASS: f64 = 3.0;
 const INERTIA: [f64; 3] = [0.04, 0.05, 0.02];
@@ -67,9 +68,7 @@ fn text(kind: Kind, center: Vec3, tag: &str) -> String {
 }
 
 fn model(text: &str) -> Arc<Model> {
-    let mut file = tempfile::Builder::new().suffix(".urdf").tempfile().unwrap();
-    file.write_all(text.as_bytes()).unwrap();
-    load(Source { urdf: Some(file.path()), packages: &[] }, Base::Fixed).unwrap_or_else(|r| panic!("{r}\n{text}")).model
+    urdf::model(text, Base::Fixed)
 }
 
 fn settings(h: f64) -> Settings {
@@ -412,10 +411,6 @@ fn a_soft_joint_without_inertia_is_named() {
         &format!("ixx='{ixx}' ixy='0' ixz='0' iyy='{iyy}' iyz='0' izz='{izz}'"),
         "ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'",
     );
-    let mut file = tempfile::Builder::new().suffix(".urdf").tempfile().unwrap();
-    file.write_all(point.as_bytes()).unwrap();
-    let Err(report) = load(Source { urdf: Some(file.path()), packages: &[] }, Base::Fixed) else {
-        panic!("a point mass on a soft hinge was taken")
-    };
+    let report = urdf::load_text(&point, Base::Fixed).err().unwrap();
     assert!(report.contains("joint 'h'") && !report.contains("body "), "{report}");
 }

@@ -20,6 +20,8 @@ pub struct JointForces {
     mass: Vec<f64>,
     before: Vec<V3<f64>>,
     after: Vec<V3<f64>>,
+    /// State that `after` belongs to: as a rule the next step begins with it.
+    ended: (Vec<f64>, Vec<f64>),
 }
 
 impl JointForces {
@@ -28,17 +30,26 @@ impl JointForces {
         let n = m.bodies.len();
         let mut mass: Vec<f64> = m.bodies.iter().map(|b| b.mass).collect();
         for_children(m, |parent, child| mass[parent] += mass[child]);
-        Self { kinematics: Kinematics::new(m), mass, before: vec![V3::default(); n], after: vec![V3::default(); n] }
+        let (before, after) = (vec![V3::default(); n], vec![V3::default(); n]);
+        // No state is equal to this one.
+        let ended = (vec![f64::NAN; m.nq], vec![f64::NAN; m.nv]);
+        Self { kinematics: Kinematics::new(m), mass, before, after, ended }
     }
 
     /// Takes the state `q` (nq), `v` (nv) at the beginning of a step.
     pub fn begin(&mut self, m: &Model, q: &[f64], v: &[f64]) {
-        momenta(m, &mut self.kinematics, (q, v), &mut self.before);
+        if self.ended.0 == q && self.ended.1 == v {
+            std::mem::swap(&mut self.before, &mut self.after);
+        } else {
+            momenta(m, &mut self.kinematics, (q, v), &mut self.before);
+        }
     }
 
     /// Takes the state at the end of the step.
     pub fn end(&mut self, m: &Model, q: &[f64], v: &[f64]) {
         momenta(m, &mut self.kinematics, (q, v), &mut self.after);
+        self.ended.0.copy_from_slice(q);
+        self.ended.1.copy_from_slice(v);
     }
 
     /// Force on the body through its joint in the step of `h` seconds between the two states under gravity (m/s²), along
