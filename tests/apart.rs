@@ -36,7 +36,7 @@ fn momentum_and_energy_are_kept_at_the_instant() {
     for seed in 0..60 {
         let mut rng = Random(seed);
         let joints: Vec<JointType> = (0..9).map(|_| ALL[rng.next() as usize % ALL.len()]).collect();
-        let m = tree(&joints, seed % 2 == 0, seed);
+        let m = tree(&joints, seed.is_multiple_of(2), seed);
         let (q, v) = state(&m, &mut rng, 2.0);
         let s = State { q, v, angles: vec![] };
         let see = |m: &Model, s: &State| {

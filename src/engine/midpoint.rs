@@ -5,6 +5,7 @@
 //! accelerations of the pass before. That contracts while h · (speeds of the velocity products) is below 1; where it does
 //! not, as on light limbs that whirl, the step is halved, which is more work and not less accuracy.
 
+use super::guard::Guard;
 use super::rbx::{Rbx, State, StepReport, StepSettings};
 use crate::dynamics::move_coordinates;
 use crate::model::Model;
@@ -14,7 +15,7 @@ use crate::solver::{AxisCommand, StepStart, write_softs};
 /// is left after the last pass is smaller by the rate of contraction.
 const TOLERANCE: f64 = 1e-8;
 /// An iteration that shrinks by less than this factor per pass does not contract.
-const CONTRACTION: f64 = 0.7;
+const CONTRACTION: f64 = 0.5;
 /// When its passes are used up, a step whose middle moves by less than this is taken; one that had enough of them is halved.
 const COARSE: f64 = 1e-6;
 const ENOUGH: u32 = 5;
@@ -25,19 +26,20 @@ const DEEPEST: u32 = 6;
 #[derive(Clone, Debug)]
 pub(super) struct Midpoint {
     /// State at the start of the (maybe halved) step.
-    start: State,
+    pub start: State,
     /// Half-way.
     middle: State,
     /// Speeds with which the coordinates move.
     u: Vec<f64>,
     /// Accelerations of the last step, the first guess for the next one.
     guess: Vec<f64>,
+    pub guard: Guard,
 }
 
 impl Midpoint {
     pub fn new(m: &Model) -> Self {
         let state = State::initial(m);
-        Self { middle: state.clone(), start: state, u: vec![0.0; m.nv], guess: vec![0.0; m.nv] }
+        Self { middle: state.clone(), start: state, u: vec![0.0; m.nv], guess: vec![0.0; m.nv], guard: Guard::new(m) }
     }
 
     pub fn forget(&mut self) {
@@ -77,12 +79,18 @@ impl Rbx {
                     report.halvings += 1;
                     continue;
                 }
-                End::Converged => {}
-                End::Unsettled | End::NoContraction => report.unsettled = true,
+                End::Converged => self.take(m, mid, part.h),
+                End::Unsettled => {
+                    report.unsettled = true;
+                    self.take(m, mid, part.h);
+                    self.guard(m, mid, part.gravity, report);
+                }
+                End::NoContraction => {
+                    report.unsettled = true;
+                    self.explicit_piece(m, mid, &part);
+                    self.guard(m, mid, part.gravity, report);
+                }
             }
-            self.axes.finish(m, &self.ws, part.h, &self.qdd);
-            self.axes.add_soft_work(m, &self.ws, &mid.start.v, (part.h, &self.qdd));
-            self.take(m, mid, part.h);
             done += piece;
             // Back to longer pieces where they fit.
             while depth > 0 && done % (pieces >> (depth - 1)) == 0 {
@@ -120,12 +128,20 @@ impl Rbx {
             if !wanted {
                 return match misfits {
                     0 if moved <= COARSE => End::Converged,
-                    0 if pass >= ENOUGH => End::NoContraction,
+                    _ if moved > COARSE && pass >= ENOUGH => End::NoContraction,
                     _ => End::Unsettled,
                 };
             }
             last = if misfits == 0 { moved } else { f64::INFINITY };
         }
+    }
+
+    /// The last resort: accelerations of the start of the piece.
+    fn explicit_piece(&mut self, m: &Model, mid: &mut Midpoint, s: &StepSettings) {
+        let at = (mid.start.as_ref(), &mid.start.v[..]);
+        self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, false));
+        self.take(m, mid, s.h);
+        mid.forget();
     }
 
     /// Takes the middle of the step from the accelerations; returns by how much its velocities have moved.
@@ -149,6 +165,8 @@ impl Rbx {
 
     /// Takes the step with the accelerations of the last pass.
     fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
+        self.axes.finish(m, &self.ws, h, &self.qdd);
+        self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
         for k in 0..m.nv {
             let change = h * self.qdd[k];
             self.state.v[k] = mid.start.v[k] + change;

@@ -2,6 +2,7 @@
 
 mod apart;
 mod breaking;
+mod guard;
 mod midpoint;
 mod rbx;
 mod rk4;

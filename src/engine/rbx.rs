@@ -203,6 +203,10 @@ pub struct StepReport {
     pub unsettled: bool,
     /// How many times a step was halved, because the iteration of the midpoint rule did not contract.
     pub halvings: u32,
+    /// Pieces of the step that were slowed down to the energy that was paid for.
+    pub guarded: u32,
+    /// What they lost, J.
+    pub guarded_energy: f64,
     /// A 3DOF group was at its pole.
     pub at_pole: bool,
     /// The new state would not have been finite: it was not taken.

@@ -88,6 +88,7 @@ pub struct AxisSet {
     pub effort: Vec<f64>,
     /// Work since the start.
     pub work: Work,
+    pub(super) paid: (f64, f64),
     pub(super) mean: bool,
     best: usize,
     patience: u32,
@@ -113,6 +114,7 @@ impl AxisSet {
             weight: vec![1.0; model.nv],
             effort: vec![0.0; n],
             work: Work::default(),
+            paid: (0.0, 0.0),
             mean: false,
             best: usize::MAX,
             patience: PATIENCE,
@@ -242,6 +244,7 @@ impl AxisSet {
 
     /// Ends an implicit step of `h` seconds with these accelerations: remembers the places, writes efforts and work.
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, h: f64, qdd: &[f64]) {
+        self.paid = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
             let (law, place) = (&self.laws[i], self.place[i]);
             let acceleration = self.axis_rate(m, axis, qdd);
@@ -259,10 +262,17 @@ impl AxisSet {
             };
             self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
             self.effort[i] = effort;
+            self.paid.0 += 0.5 * h * total * self.speed[i];
+            self.paid.1 += 0.5 * h * total * end;
             let way = 0.5 * h * (self.speed[i] + end);
             self.work.drives += effort * way;
             self.work.losses -= (total - effort) * way;
         }
+    }
+
+    /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.
+    pub fn paid(&self) -> (f64, f64) {
+        self.paid
     }
 
     /// True if no axis has been moved to another part of its law in the last pass.

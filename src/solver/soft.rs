@@ -39,7 +39,10 @@ impl AxisSet {
         for soft in &m.softs {
             let (input, a) = (&ws.dofs[soft.v], qdd[soft.v]);
             let force = if input.free > 0.0 { input.tau - input.diagonal * a } else { ws.reaction[soft.v] };
-            self.work.losses -= force * h * (v[soft.v] + 0.5 * h * a);
+            let (start, end) = (v[soft.v], v[soft.v] + h * a);
+            self.paid.0 += 0.5 * h * force * start;
+            self.paid.1 += 0.5 * h * force * end;
+            self.work.losses -= 0.5 * h * force * (start + end);
         }
     }
 }

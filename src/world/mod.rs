@@ -17,7 +17,7 @@ pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
 
 /// Counters since the start; none of them is ever reset by a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
     /// Steps made.
     pub steps: u64,
@@ -27,6 +27,11 @@ pub struct Stats {
     pub unsettled_steps: u64,
     /// How often a step was halved because its iteration did not contract: velocity products of light limbs that whirl.
     pub halvings: u64,
+    /// Pieces of steps that even the shortest piece did not resolve: their motion was slowed down to the energy that drives and
+    /// weight had paid for.
+    pub guarded_pieces: u64,
+    /// What they lost, J.
+    pub guarded_energy: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
     pub pole_steps: u64,
     /// Steps whose result was not finite and was not taken. The world stands still from the first one on.
@@ -187,6 +192,8 @@ impl World {
         s.fallback_steps += u64::from(report.fell_back);
         s.unsettled_steps += u64::from(report.unsettled);
         s.halvings += u64::from(report.halvings);
+        s.guarded_pieces += u64::from(report.guarded);
+        s.guarded_energy += report.guarded_energy;
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
     }
