@@ -7,7 +7,7 @@ use realnoid::dynamics::{Kinematics, energy, kinematics, link_pose, link_twist, 
 use realnoid::engine::{State, come_apart};
 use realnoid::math::{V3, Vec3};
 use realnoid::model::{AxisSlot, Base, JointType, LinkFrame, Model};
-use realnoid::world::{AxisCommand, Integrator, Settings, Snapshot, World};
+use realnoid::world::{AxisCommand, Integrator, Settings, Side, Snapshot, World};
 use std::sync::Arc;
 use support::urdf::{joint, link, model, robot};
 use support::{ALL, Random, state, tree};
@@ -240,4 +240,37 @@ fn massless_links_stay_with_what_carried_them() {
     assert!((x_ul.rotation.scaled_axis() - Vec3::new(h, 0.0, 0.0)).norm() < 1e-12);
     assert!((x_ul.translation.vector - Vec3::new(0.0, 0.0, -0.4)).norm() < 1e-12);
     assert_eq!(s.cut_off, [false, false, false, true]);
+}
+
+/// A fixed base that has been moved goes back by a reset also when a joint broke since; remembered, it stays where it is.
+#[test]
+fn a_moved_base_and_a_broken_joint_both_go_back() {
+    let m = model(
+        &robot(&[
+            link("base", 1.0, BELOW),
+            link("arm", 1.0, BELOW),
+            link("hand", 1.0, BELOW),
+            joint("h", "revolute", ("base", "arm"), ("0 0 -0.4", "0 1 0"), ""),
+            joint("weld", "fixed", ("arm", "hand"), ("0 0 -0.4", "0 1 0"), "break_threshold='1'"),
+        ]),
+        Base::Fixed,
+    );
+    let mut w = world(&m);
+    let start = bits(&w.new_snapshot());
+    w.set_joint_angle(0, 0.5, Side::Root).unwrap();
+    run(&mut w, 5);
+    assert_eq!(w.broken().len(), 1);
+    // Once more, with the hand off.
+    w.set_joint_angle(0, 0.7, Side::Root).unwrap();
+    run(&mut w, 5);
+    w.reset();
+    assert_eq!(bits(&w.new_snapshot()), start);
+    w.set_joint_angle(0, 0.5, Side::Root).unwrap();
+    assert!(w.remember());
+    let remembered = bits(&w.new_snapshot());
+    assert_ne!(remembered, start);
+    run(&mut w, 5);
+    assert_eq!(w.broken().len(), 1);
+    w.reset();
+    assert_eq!(bits(&w.new_snapshot()), remembered);
 }

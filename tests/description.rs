@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test")]
 
+#[path = "description/groups.rs"]
+mod groups;
 #[path = "description/mutations.rs"]
 mod mutations;
 #[path = "description/tags.rs"]

@@ -23,6 +23,9 @@ fn limb(kind: &str, limit: &str, dynamics: &str) -> Arc<Model> {
     let tag = match kind {
         "3dof" => "<realnoid version='1'><joint_group name='hip' type='3dof' h='h' p='p' b='b'/></realnoid>",
         "cardan" => "<realnoid version='1'><joint_group name='hip' type='cardan' h='h' p='p'/></realnoid>",
+        "combined_hinge" => {
+            "<realnoid version='1'><joint_group name='hip' type='combined_hinge' h='h' p='p' b='b'/></realnoid>"
+        }
         _ => "",
     };
     let text = format!(
@@ -89,7 +92,7 @@ fn groups_move_as_chains_of_hinges() {
         (axes(&w), shown.link_pose, shown.link_twist, w.stats())
     };
     let chain = run("chain");
-    for kind in ["3dof", "cardan"] {
+    for kind in ["3dof", "cardan", "combined_hinge"] {
         let group = run(kind);
         assert_eq!(group.3.fallback_steps, 0);
         for (a, b) in chain.0.iter().zip(&group.0) {

@@ -185,16 +185,26 @@ pub struct SimulateArgs {
     /// Twist of a free base in the base frame, angular (rad/s) first.
     #[arg(long, value_name = "WX,WY,WZ,VX,VY,VZ", allow_hyphen_values = true)]
     pub base_twist: Option<String>,
-    /// Applied torque (N·m; N for a linear axis) during the whole run.
-    #[arg(long, value_name = "AXIS=TORQUE")]
-    pub effort: Vec<String>,
-    /// Servo target (rad; m for a linear axis) during the whole run.
+    /// Position of an axis at start, set from its root side: what hangs on the axis stays where it is, the base moves.
     #[arg(long, value_name = "AXIS=POSITION")]
+    pub turn: Vec<String>,
+    /// Applied torque (N·m; N for a linear axis) and applied speed (rad/s; m/s) from the start.
+    #[arg(long, value_name = "AXIS=TORQUE[,SPEED]")]
+    pub effort: Vec<String>,
+    /// Servo target (rad; m for a linear axis) from the start, and what bounds its torque and speed.
+    #[arg(long, value_name = "AXIS=POSITION[,TORQUE[,SPEED]]")]
     pub servo: Vec<String>,
+    /// Commands and drive settings over time (YAML): a list of entries {at: seconds, axis: NAME, …}.
+    ///
+    /// An entry takes mode (idle, torque, servo), torque, speed, target, max_torque, no_load_speed, static_resistance,
+    /// dynamic_resistance, short_brake, bandwidth, rotor_inertia. A mode begins a new command; what an entry does not name stays as it
+    /// is. Entries are in the order of time; one inside a control interval takes effect with the next interval.
+    #[arg(long, value_name = "FILE.yaml")]
+    pub script: Option<PathBuf>,
     /// Time between two rows, s: a whole multiple of the control interval, which it is if not given.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub every: Option<f64>,
-    /// Switch an effect off: gravity, damping, friction, limits, drives.
+    /// Switch an effect off: gravity, damping, friction, limits, drives, rotor_inertia, compliance, mimic, breaking.
     #[arg(long, value_name = "EFFECT")]
     pub off: Vec<String>,
     /// Switch an effect on.

@@ -1,8 +1,8 @@
 //! URDF text → model, with every finding on the way.
 
-use crate::description::{self, Description, Finding, Severity};
+use crate::description::{self, Description, Finding, Severity, WORLD_ANCHOR};
 use crate::dynamics::singular_axes;
-use crate::engine::{State, come_apart};
+use crate::engine::{ENGINE_NAMES, State, come_apart, not_honoured};
 use crate::mass::{LinkBody, MassProperties, link_bodies, with_inertials};
 use crate::math::Pose;
 use crate::model::{Base, LinkFrame, Model};
@@ -115,6 +115,8 @@ pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, 
     let robot = reading.description.and_then(|d| {
         let (bodies, more) = link_bodies(&d, &meshes);
         findings.extend(more);
+        findings.extend(not_honoured(ENGINE_NAMES[0], &d));
+        findings.extend(loose_anchors(&d, base));
         if findings.iter().any(|f| f.severity == Severity::Error) {
             return None;
         }
@@ -132,6 +134,22 @@ pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, 
 
 fn properties(bodies: &[LinkBody]) -> Vec<MassProperties> {
     bodies.iter().map(|body| body.properties).collect()
+}
+
+/// J-7: a chain anchored to the world stands on a fixed base.
+fn loose_anchors(d: &Description, base: Base) -> Vec<Finding> {
+    let is_link = d.links.iter().any(|link| link.name == WORLD_ANCHOR);
+    let at_world = |chain: &&description::Chain| !is_link && chain.anchor.as_deref() == Some(WORLD_ANCHOR);
+    let loose = d.chains.iter().filter(|chain| base == Base::Free && at_world(chain));
+    let told = loose.map(|chain| Finding {
+        severity: Severity::Error,
+        code: "chain-anchor",
+        message: format!("the chain of '{}' is anchored to the world, but the base of the robot is free", chain.root),
+        element: format!("robot '{}' <chain>", d.name),
+        at: chain.at,
+        mend: "simulate it with a fixed base (--base fixed, parameter base), or anchor the chain to a link".into(),
+    });
+    told.collect()
 }
 
 /// The joint that carries no inertia, or the root link of a free base, found by the link on its body.

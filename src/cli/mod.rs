@@ -3,12 +3,14 @@
 pub mod args;
 pub mod bench;
 pub mod check;
+pub mod commands;
 pub mod drawing;
 pub mod evaluate;
 pub mod inspect;
 pub mod load;
 pub mod run;
 pub mod scene;
+pub mod script;
 pub mod simulate;
 
 use args::{Cli, Command};

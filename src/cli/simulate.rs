@@ -1,14 +1,16 @@
 //! `realnoid simulate`: no ROS, as fast as it goes.
 
 use super::args::{SimulateArgs, assignment, numbers};
+use super::commands::{self, axis};
 use super::load::{Loaded, load_at};
 use super::scene::{Scene, integrator, interval_ns, pose};
+use super::script::Script;
 use crate::description::Severity;
 use crate::engine::{ENGINE_NAMES, State};
 use crate::math::{Pose, Vec3};
 use crate::model::{Base, EFFECT_NAMES, Model};
 use crate::record::{Format, RecordError, Recorder, Sample};
-use crate::world::{AxisCommand, Settings, World};
+use crate::world::{Settings, World};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -55,6 +57,33 @@ struct Outcome {
     /// By a signal.
     stopped: bool,
     files: Vec<PathBuf>,
+    /// Per axis.
+    peaks: Vec<Peak>,
+}
+
+/// Greatest magnitudes at the ends of the control intervals (J-15, J-16).
+#[derive(Clone, Copy, Default)]
+struct Peak {
+    /// N·m or N, really applied.
+    torque: f64,
+    /// rad/s or m/s.
+    speed: f64,
+}
+
+impl Outcome {
+    fn note_peaks(&mut self, world: &World) {
+        for (axis, peak) in self.peaks.iter_mut().enumerate() {
+            peak.torque = peak.torque.max(world.efforts()[axis].abs());
+            peak.speed = peak.speed.max(world.state().axis(world.model(), axis).1.abs());
+        }
+    }
+
+    fn peaks(&self, m: &Model) -> serde_json::Map<String, serde_json::Value> {
+        let told = |(axis, peak): (&crate::model::Axis, &Peak)| {
+            (axis.name.clone(), json!({"torque": peak.torque, "speed": peak.speed}))
+        };
+        m.axes.iter().zip(&self.peaks).map(told).collect()
+    }
 }
 
 /// A line on standard error that tells how far a long run is, if people see it.
@@ -89,6 +118,7 @@ impl Progress {
 struct Plan<'a> {
     args: &'a SimulateArgs,
     world: World,
+    script: Script,
     intervals: u64,
     every: u64,
     warnings: Vec<String>,
@@ -109,11 +139,15 @@ impl<'a> Plan<'a> {
         let initial = initial_state(args, &model, pose).map_err(usage)?;
         let mut world = World::new(Arc::new(model), settings).map_err(usage)?;
         world.set_initial_state(initial);
-        set_commands(args, &mut world).map_err(usage)?;
+        commands::turn(args, &mut world).map_err(usage)?;
+        commands::command(args, &mut world).map_err(usage)?;
         let (intervals, every) = schedule(args, &settings).map_err(usage)?;
+        let read = |path| Script::read(path, &world, &loaded.description, (interval(&settings), intervals));
+        let script = args.script.as_deref().map(read).transpose().map_err(usage)?.unwrap_or_default();
         let mut warnings = warnings(&loaded);
         warnings.extend(scene.pending);
-        Ok(Self { args, world, intervals, every, warnings })
+        warnings.extend(script.warnings.iter().cloned());
+        Ok(Self { args, world, script, intervals, every, warnings })
     }
 
     fn run(&mut self) -> Result<serde_json::Value, String> {
@@ -136,7 +170,8 @@ impl<'a> Plan<'a> {
         mut recorder: Option<&mut Recorder>,
         progress: &mut Progress,
     ) -> Result<Outcome, RecordError> {
-        let mut outcome = Outcome { finite: true, ..Outcome::default() };
+        let peaks = vec![Peak::default(); self.world.model().axes.len()];
+        let mut outcome = Outcome { finite: true, peaks, ..Outcome::default() };
         let mut sample = Sample::new(&self.world);
         for interval in 0..=self.intervals {
             let complete = interval == self.intervals;
@@ -154,9 +189,11 @@ impl<'a> Plan<'a> {
                 break;
             }
             progress.show(interval, self.intervals);
+            self.script.apply(interval, &mut self.world);
             let start = super::bench::cpu_seconds();
             self.world.advance();
             outcome.cpu += super::bench::cpu_seconds() - start;
+            outcome.note_peaks(&self.world);
         }
         Ok(outcome)
     }
@@ -191,6 +228,7 @@ impl<'a> Plan<'a> {
             "cpu_seconds": cpu,
             "us_per_step": if s.steps > 0 { cpu * 1e6 / s.steps as f64 } else { 0.0 },
             "worst_penetration": 0.0,
+            "peaks": outcome.peaks(self.world.model()),
             "finite": outcome.finite,
             "stopped": outcome.stopped,
             "fallback_steps": s.fallback_steps,
@@ -277,40 +315,14 @@ fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, St
     Ok(s)
 }
 
-fn set_commands(args: &SimulateArgs, world: &mut World) -> Result<(), String> {
-    let model = world.model().clone();
-    let (mut commands, mut taken) = (world.commands().to_vec(), Vec::new());
-    let (torque, servo) = (AxisCommand::torque as fn(f64) -> AxisCommand, AxisCommand::servo as fn(f64) -> AxisCommand);
-    let efforts = args.effort.iter().map(|text| ("--effort", "AXIS=TORQUE", text, torque));
-    let servos = args.servo.iter().map(|text| ("--servo", "AXIS=POSITION", text, servo));
-    for (flag, form, text, command) in efforts.chain(servos) {
-        let (name, values) = assignment(flag, form, text)?;
-        let [value] = values[..] else { return Err(format!("{flag} {text}: must be {form}")) };
-        let axis = axis(&model, flag, name)?;
-        let wrong = |reason: &str| Err(format!("{flag} {text}: axis '{name}' {reason}"));
-        if taken.contains(&axis) {
-            return wrong("already has a command; give it one --effort or one --servo");
-        }
-        let drive = &model.axes[axis];
-        if !drive.switchable && drive.mode != command(value).mode {
-            return wrong("has a drive that stays in its mode; its tag can allow the change with switchable=\"true\"");
-        }
-        taken.push(axis);
-        commands[axis] = command(value);
-    }
-    world.set_commands(&commands).map_err(|axis| format!("the command of axis {axis} is not sound"))
-}
-
-fn axis(m: &Model, flag: &str, name: &str) -> Result<usize, String> {
-    m.axis(name).ok_or_else(|| {
-        let names: Vec<&str> = m.axes.iter().map(|a| a.name.as_str()).collect();
-        format!("{flag}: there is no axis '{name}'; the axes are: {}", names.join(", "))
-    })
+/// Simulated time of a control interval, s.
+fn interval(s: &Settings) -> f64 {
+    s.control_interval_ns as f64 * 1e-9 * s.time_scale
 }
 
 /// Number of intervals, and of intervals between two rows.
 fn schedule(args: &SimulateArgs, s: &Settings) -> Result<(u64, u64), String> {
-    let interval = s.control_interval_ns as f64 * 1e-9 * s.time_scale;
+    let interval = interval(s);
     if interval <= 0.0 {
         return Err("time_scale 0 stops time: the duration would never be reached".into());
     }

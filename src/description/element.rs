@@ -198,7 +198,7 @@ impl<'a> Element<'a> {
 }
 
 /// Elements whose `name` is their identity.
-const NAMED: [&str; 5] = ["link", "joint", "robot", "joint_group", "material"];
+const NAMED: [&str; 6] = ["link", "joint", "robot", "joint_group", "separate_rig", "material"];
 
 struct Wrong {
     code: &'static str,

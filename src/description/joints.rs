@@ -142,10 +142,12 @@ fn read_limit(element: &Element, kind: Option<JointKind>, report: &mut Report) -
     let moves = has_axis(kind);
     let effort = bound_or_placeholder(&limit, "effort", moves, report);
     let velocity = bound_or_placeholder(&limit, "velocity", moves, report);
-    Some(Limit { at: limit.place(report).at, lower, upper, effort, velocity })
+    let beyond = BEYOND.iter().filter(|name| moves && limit.value(name).is_some()).copied().collect();
+    Some(Limit { at: limit.place(report).at, lower, upper, effort, velocity, beyond })
 }
 
-const LIMIT_ATTRIBUTES: &[&str] = &["lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"];
+const BEYOND: [&str; 3] = ["acceleration", "deceleration", "jerk"];
+const LIMIT_ATTRIBUTES: &[&str] = &["lower", "upper", "effort", "velocity", BEYOND[0], BEYOND[1], BEYOND[2]];
 const UNLIMITED: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 /// The range of a revolute or prismatic joint. A bound that is left out is 0 before URDF 1.2, later infinite.
@@ -159,8 +161,15 @@ fn range(limit: &Element, lower: Option<f64>, upper: Option<f64>, report: &mut R
         report.add(Finding::error("lower-above-upper", limit.place_of("lower", report), message, mend));
     } else if low == high && given {
         let message = format!("the range is {low} to {high}: this axis cannot move");
-        let mend = "give lower and upper (what is left out is 0 in URDF), or make the joint fixed";
-        report.add_once("", Finding::warning("empty-range", limit.place(report), message, mend));
+        let (code, mend) = match low {
+            0.0 => ("empty-range", "give lower and upper (what is left out is 0 in URDF), or make the joint fixed"),
+            // W-16: an axis that cannot move is not at 0.
+            _ => (
+                "frozen-transform",
+                "make the joint fixed, with this angle in its <origin>: tools that do not hear joint_states show it at 0",
+            ),
+        };
+        report.add_once("", Finding::warning(code, limit.place(report), message, mend));
     }
     (low, high)
 }

@@ -81,6 +81,7 @@ fn read_robot(robot: &Element, text: &str, file: &str, report: &mut Report) -> O
         joints,
         groups: tags.groups.iter().map(|(group, _)| group.clone()).collect(),
         chains: tags.chains.iter().map(|(chain, _)| chain.clone()).collect(),
+        rigs: tags.rigs.iter().map(|(rig, _)| rig.clone()).collect(),
     };
     checks::run(&description, robot, &tags, all_joints_read, report);
     Some(description)

@@ -31,13 +31,12 @@ pub(super) const PENDING: &[Pending] = &[
     tag("surface", "there is no contact yet"),
     tag("damping", "bodies are not damped"),
     tag("deactivate", "bodies stay active"),
-    tag("chain", "there is no contact inside a chain yet"),
+    attribute("chain", "self_collision", "there is no contact inside a chain yet"),
     attribute("drive", "static_resistance", "the axis turns without this resistance"),
     attribute("drive", "dynamic_resistance", "the axis turns without this resistance"),
     attribute("drive", "short_brake", "the axis is not braked"),
     attribute("drive", "rotor_inertia", "the motor adds no inertia"),
     attribute("drive", "gear_ratio", "the motor adds no inertia"),
-    attribute("joint_group", "e", "the axis is simulated as a plain prismatic joint"),
 ];
 
 /// Adds a note for each row that `element`, an instance of the tag `name`, calls for; each row is told once.

@@ -38,12 +38,37 @@ pub struct Description {
     pub groups: Vec<JointGroup>,
     /// `<chain>` tags.
     pub chains: Vec<Chain>,
+    /// `<separate_rig>` tags.
+    pub rigs: Vec<SeparateRig>,
 }
 
 impl Description {
     /// The joint that carries each link, by the link's name; the root is not in it.
     pub fn joints_above(&self) -> HashMap<&str, &Joint> {
         self.joints.iter().map(|joint| (joint.child.as_str(), joint)).collect()
+    }
+
+    /// A joint by its name.
+    pub fn joint(&self, name: &str) -> Option<&Joint> {
+        self.joints.iter().find(|joint| joint.name == name)
+    }
+
+    /// A group by its name.
+    pub fn group(&self, name: &str) -> Option<&JointGroup> {
+        self.groups.iter().find(|group| group.name == name)
+    }
+
+    /// The group that a joint is an axis of.
+    pub fn group_of(&self, joint: &str) -> Option<&JointGroup> {
+        self.groups.iter().find(|group| group.axes().any(|(_, name)| name == joint))
+    }
+
+    /// The joint nearest the root of what `name` stands for: a group's first axis, or the joint itself.
+    pub fn first_joint(&self, name: &str) -> Option<&Joint> {
+        match self.group(name) {
+            Some(group) => group.axes().find_map(|(_, axis)| self.joint(axis)),
+            None => self.joint(name),
+        }
     }
 }
 
@@ -225,6 +250,8 @@ pub struct Limit {
     pub effort: Option<f64>,
     /// rad/s or m/s; `None` where the text gives none or the placeholder 0.
     pub velocity: Option<f64>,
+    /// Names of the bounds that stand there beyond these: acceleration, deceleration, jerk (URDF 1.2).
+    pub beyond: Vec<&'static str>,
 }
 
 /// `<mimic joint multiplier offset>`.
@@ -325,6 +352,17 @@ pub struct JointGroup {
     pub e: Option<String>,
 }
 
+impl JointGroup {
+    /// Letters and joint names of the axes that are given, from the root outwards.
+    pub fn axes(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let given = [("h", &self.h), ("p", &self.p), ("b", &self.b), ("e", &self.e)];
+        given.into_iter().filter_map(|(letter, name)| Some((letter, name.as_deref()?)))
+    }
+}
+
+/// What a chain is anchored to that stands on the fixed base of the robot, where no link has that name.
+pub const WORLD_ANCHOR: &str = "world";
+
 /// `<chain>`.
 #[derive(Clone, Debug)]
 pub struct Chain {
@@ -332,8 +370,21 @@ pub struct Chain {
     pub at: Position,
     /// Joint or group that is the root.
     pub root: String,
-    /// Link the root is anchored to.
+    /// Link the root is anchored to, or [`WORLD_ANCHOR`].
     pub anchor: Option<String>,
     /// J-9.
     pub self_collision: bool,
+}
+
+/// `<separate_rig>` (J-4): a frame outside the tree of links that mirrors a group.
+#[derive(Clone, Debug)]
+pub struct SeparateRig {
+    /// Where.
+    pub at: Position,
+    /// Name of the frame, unique among frames.
+    pub name: String,
+    /// The group whose angles it mirrors.
+    pub group: String,
+    /// Link under which the frame stands; `None`: the link that carries the group.
+    pub anchor: Option<String>,
 }

@@ -9,7 +9,7 @@
 //! with P its linear momentum at the end and the beginning. This holds for any integrator, and counts impacts in full.
 
 use super::{Kinematics, kinematics};
-use crate::math::V3;
+use crate::math::{Pose, V3};
 use crate::model::{JointType, Model};
 
 /// Forces through the joints of one model. Makes its memory once.
@@ -22,6 +22,8 @@ pub struct JointForces {
     after: Vec<V3<f64>>,
     /// State that `after` belongs to: as a rule the next step begins with it.
     ended: (Vec<f64>, Vec<f64>),
+    /// Where the fixed base was then.
+    base: Pose,
 }
 
 impl JointForces {
@@ -33,12 +35,12 @@ impl JointForces {
         let (before, after) = (vec![V3::default(); n], vec![V3::default(); n]);
         // No state is equal to this one.
         let ended = (vec![f64::NAN; m.nq], vec![f64::NAN; m.nv]);
-        Self { kinematics: Kinematics::new(m), mass, before, after, ended }
+        Self { kinematics: Kinematics::new(m), mass, before, after, ended, base: m.base_pose }
     }
 
     /// Takes the state `q` (nq), `v` (nv) at the beginning of a step.
     pub fn begin(&mut self, m: &Model, q: &[f64], v: &[f64]) {
-        if self.ended.0 == q && self.ended.1 == v {
+        if self.ended.0 == q && self.ended.1 == v && self.base == m.base_pose {
             std::mem::swap(&mut self.before, &mut self.after);
         } else {
             momenta(m, &mut self.kinematics, (q, v), &mut self.before);
@@ -50,6 +52,7 @@ impl JointForces {
         momenta(m, &mut self.kinematics, (q, v), &mut self.after);
         self.ended.0.copy_from_slice(q);
         self.ended.1.copy_from_slice(v);
+        self.base = m.base_pose;
     }
 
     /// Force on the body through its joint in the step of `h` seconds between the two states under gravity (m/s²), along

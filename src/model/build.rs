@@ -2,7 +2,9 @@
 
 mod soften;
 
+use super::chain::chains;
 use super::membership::memberships;
+use super::rig::rigs;
 use super::{
     Axis, AxisKind, AxisSlot, Body, DriveLimits, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model, Softness,
 };
@@ -67,6 +69,7 @@ impl<'a> Builder<'a> {
             bodies: vec![],
             eulers: vec![],
             base,
+            base_pose: Pose::identity(),
             root_link,
             nq: 0,
             nv: 0,
@@ -74,6 +77,8 @@ impl<'a> Builder<'a> {
             softs: vec![],
             couplings: vec![],
             breakables: vec![],
+            chains: chains(d),
+            rigs: vec![],
             effects: Effects::NONE,
         };
         let seats = vec![(0, Pose::identity()); d.links.len()];
@@ -96,7 +101,10 @@ impl<'a> Builder<'a> {
             .collect();
         let root = self.model.root_link;
         match self.model.base {
-            Base::Fixed => self.seat(root, (0, base_pose)),
+            Base::Fixed => {
+                self.model.base_pose = base_pose;
+                self.seat(root, (0, base_pose));
+            }
             Base::Free => {
                 let body = self.add_body(0, JointType::Floating, Pose::identity());
                 self.seat(root, (body, Pose::identity()));
@@ -122,18 +130,21 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The joints of the 3DOF or cardan group that begins with this joint, if all its axes exist.
+    /// The joints of the 3DOF or cardan group that begins with this joint, if they share one body: all three of a 3DOF, or
+    /// H and P. What is missing or fixed (J-6) leaves a joint of fewer axes; any other rest is a chain of hinges, which
+    /// moves alike.
     fn group_from(&self, joint: usize) -> Option<(GroupKind, Vec<usize>)> {
         let name = Some(self.d.joints[joint].name.as_str());
         let g = self.d.groups.iter().find(|g| g.h.as_deref() == name)?;
-        let wanted: &[&Option<String>] = match g.kind {
-            GroupKind::ThreeDof => &[&g.h, &g.p, &g.b],
-            GroupKind::Cardan => &[&g.h, &g.p],
-            GroupKind::CombinedHinge => return None,
+        let moving = |n: &Option<String>| {
+            let index = self.d.joints.iter().position(|j| Some(&j.name) == n.as_ref())?;
+            (self.d.joints[index].kind != JointKind::Fixed).then_some(index)
         };
-        let index = |n: &Option<String>| n.as_deref().and_then(|n| self.d.joints.iter().position(|j| j.name == n));
-        let joints: Option<Vec<usize>> = wanted.iter().map(|n| index(n)).collect();
-        joints.map(|j| (g.kind, j))
+        match (g.kind, moving(&g.h), moving(&g.p), moving(&g.b)) {
+            (GroupKind::ThreeDof, Some(h), Some(p), Some(b)) => Some((GroupKind::ThreeDof, vec![h, p, b])),
+            (GroupKind::ThreeDof | GroupKind::Cardan, Some(h), Some(p), _) => Some((GroupKind::Cardan, vec![h, p])),
+            _ => None,
+        }
     }
 
     fn attach_single(&mut self, link: usize, index: usize) -> usize {
@@ -309,6 +320,7 @@ impl<'a> Builder<'a> {
                 self.model.axes.push(axis(j, *slot));
             }
         }
+        self.model.rigs = rigs(self.d, &self.model);
         self.model.effects = Effects::called_for(&self.model);
     }
 }

@@ -1,6 +1,6 @@
 //! Which joint's link a body belongs to (B-7).
 
-use crate::description::{Description, Joint, JointGroup, JointKind};
+use crate::description::{Description, JointKind};
 
 /// A URDF link as a part of what one axis moves: the source's link (節), the bodies from one axis to the next.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,16 +16,11 @@ pub struct Membership {
 /// Per link of the description; `None`: fixed to the root of the robot.
 pub(super) fn memberships(d: &Description) -> Vec<Option<Membership>> {
     let above = d.joints_above();
-    let group_of = |joint: &Joint| d.groups.iter().find(|g| names(g).any(|name| *name == joint.name));
     let membership = |link: &str| {
         let path = std::iter::successors(above.get(link), |joint| above.get(joint.parent.as_str()));
         let (steps, moving) = path.take(d.joints.len()).enumerate().find(|(_, j)| j.kind != JointKind::Fixed)?;
-        let joint = group_of(moving).map_or(&moving.name, |group| &group.name).clone();
+        let joint = d.group_of(&moving.name).map_or(&moving.name, |group| &group.name).clone();
         Some(Membership { joint, axis: moving.name.clone(), root: steps == 0 })
     };
     d.links.iter().map(|link| membership(&link.name)).collect()
-}
-
-fn names(group: &JointGroup) -> impl Iterator<Item = &String> {
-    [&group.h, &group.p, &group.b, &group.e].into_iter().flatten()
 }

@@ -4,18 +4,22 @@
 //! invariant: every body's joint frame has its (last) axis along z; the frame of a body is its joint frame.
 
 mod build;
+mod chain;
 mod constraint;
 mod drive;
 mod effects;
 mod group;
 mod membership;
+mod rig;
 
 pub use build::Base;
+pub use chain::LinkChain;
 pub use constraint::{Breakable, Coupling, SoftDof, Softness};
 pub use drive::{DriveLimits, SERVO_TIME};
 pub use effects::{EFFECT_NAMES, Effects};
 pub use group::{EulerFrame, EulerRates, POLE, rotation};
 pub use membership::Membership;
+pub use rig::Rig;
 
 use crate::description::{DriveMode, MonitorFrame};
 use crate::math::{M3, Pose, S3, V3};
@@ -196,6 +200,8 @@ pub struct Model {
     pub eulers: Vec<EulerFrame>,
     /// How the root is held.
     pub base: Base,
+    /// Root link of a fixed base in the world; that of a free base is in the state.
+    pub base_pose: Pose,
     /// Index of the root link.
     pub root_link: usize,
     /// Coordinates.
@@ -211,6 +217,10 @@ pub struct Model {
     pub couplings: Vec<Coupling>,
     /// Joints with a break threshold.
     pub breakables: Vec<Breakable>,
+    /// Chains of links (J-3, J-7, J-9).
+    pub chains: Vec<LinkChain>,
+    /// Frames that mirror groups (J-4).
+    pub rigs: Vec<Rig>,
     /// What the scene calls for.
     pub effects: Effects,
 }
@@ -223,6 +233,25 @@ impl Model {
     /// Index of an axis by its URDF joint name.
     pub fn axis(&self, name: &str) -> Option<usize> {
         self.axes.iter().position(|a| a.name == name)
+    }
+    /// Moves the fixed base, and what stands on it, by a rigid motion in the world; what floats stays.
+    pub fn move_fixed_base(&mut self, motion: &Pose) {
+        let r = M3::from(*motion.rotation.to_rotation_matrix().matrix());
+        let p = V3::from(motion.translation.vector);
+        for b in self.bodies.iter_mut().skip(1).filter(|b| b.parent == 0 && b.joint != JointType::Floating) {
+            (b.tree_r, b.tree_p) = (r.mm(&b.tree_r), r.mv(b.tree_p) + p);
+        }
+        for link in &mut self.links {
+            if let LinkFrame::OnBody { body: 0, offset } = &mut link.frame {
+                *offset = motion * *offset;
+            }
+        }
+        self.base_pose = motion * self.base_pose;
+    }
+    /// Index of the link that an axis itself carries.
+    pub fn carried(&self, axis: usize) -> Option<usize> {
+        let name = &self.axes[axis].name;
+        self.links.iter().position(|l| l.membership.as_ref().is_some_and(|m| m.root && m.axis == *name))
     }
     /// The coordinates at which every angle is 0 and every quaternion 1.
     pub fn neutral(&self) -> Vec<f64> {

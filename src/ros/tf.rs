@@ -1,16 +1,21 @@
-//! Frames: parent link → child link, and world → root.
+//! Frames: parent link → child link, world → root, and separate rigs.
 
 use super::messages::{Header, TFMessage, Time, TransformStamped};
 use crate::math::Pose;
-use crate::model::{Base, Model};
+use crate::model::{Base, Model, Rig};
+use crate::monitor::rig_values;
 use crate::world::Snapshot;
 
 /// Name of the frame that does not move.
 pub const WORLD: &str = "world";
 
-/// The tree of frames, in the order of `Model::links`.
+/// The tree of frames.
 #[derive(Clone, Debug)]
-pub struct Frames(Vec<Frame>);
+pub struct Frames {
+    /// In the order of `Model::links`.
+    links: Vec<Frame>,
+    rigs: Vec<Rig>,
+}
 
 #[derive(Clone, Debug)]
 struct Frame {
@@ -20,14 +25,14 @@ struct Frame {
 }
 
 impl Frames {
-    /// Frames of the links of `model`.
+    /// Frames of the links and rigs of `model`.
     pub fn new(model: &Model) -> Self {
         let frame = |l: &crate::model::LinkInfo| Frame {
             name: l.name.clone(),
             parent: l.parent,
             fixed: if l.parent.is_some() { l.fixed } else { model.base == Base::Fixed },
         };
-        Self(model.links.iter().map(frame).collect())
+        Self { links: model.links.iter().map(frame).collect(), rigs: model.rigs.clone() }
     }
 
     /// Frames whose place in their parent never changes.
@@ -37,12 +42,18 @@ impl Frames {
 
     /// Frames that move, where they are now.
     pub fn moving(&self, snapshot: &Snapshot) -> TFMessage {
-        self.message(snapshot, false)
+        let mut message = self.message(snapshot, false);
+        message.transforms.extend(self.rigs.iter().map(|rig| TransformStamped {
+            header: Header { stamp: Time::from_ns(snapshot.stamp_ns), frame_id: self.links[rig.parent].name.clone() },
+            child_frame_id: rig.name.clone(),
+            transform: rig_values(rig, snapshot).in_parent.into(),
+        }));
+        message
     }
 
     fn message(&self, snapshot: &Snapshot, fixed: bool) -> TFMessage {
         let stamp = Time::from_ns(snapshot.stamp_ns);
-        let asked = self.0.iter().enumerate().filter(|(_, f)| f.fixed == fixed);
+        let asked = self.links.iter().enumerate().filter(|(_, f)| f.fixed == fixed);
         let transforms = asked.map(|(link, frame)| {
             let (parent, x_pc) = self.in_parent(link, snapshot);
             TransformStamped {
@@ -58,8 +69,8 @@ impl Frames {
     fn in_parent(&self, link: usize, snapshot: &Snapshot) -> (&str, Pose) {
         let x_wc = &snapshot.link_pose[link];
         let cut_off = snapshot.cut_off.get(link).is_some_and(|cut_off| *cut_off);
-        match self.0[link].parent.filter(|_| !cut_off) {
-            Some(parent) => (&self.0[parent].name, snapshot.link_pose[parent].inv_mul(x_wc)),
+        match self.links[link].parent.filter(|_| !cut_off) {
+            Some(parent) => (&self.links[parent].name, snapshot.link_pose[parent].inv_mul(x_wc)),
             None => (WORLD, *x_wc),
         }
     }
@@ -73,8 +84,8 @@ mod tests {
     #[test]
     fn transforms_are_relative_to_the_parent_and_parted_by_motion() {
         let frame = |name: &str, parent, fixed| Frame { name: name.into(), parent, fixed };
-        let frames =
-            Frames(vec![frame("root", None, true), frame("arm", Some(0), false), frame("tool", Some(1), true)]);
+        let links = vec![frame("root", None, true), frame("arm", Some(0), false), frame("tool", Some(1), true)];
+        let frames = Frames { links, rigs: vec![] };
         let at = |x, turn| Pose::new(Vec3::new(x, 0.0, 0.0), Vec3::new(0.0, 0.0, turn));
         let quarter = std::f64::consts::FRAC_PI_2;
         let tool = at(1.0, quarter) * at(2.0, 0.0);

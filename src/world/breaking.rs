@@ -26,7 +26,7 @@ impl std::fmt::Display for Broken {
 /// What a world keeps of its joints that break.
 #[derive(Clone, Debug)]
 pub(super) struct Breaking {
-    /// The model with all its joints.
+    /// The model with all its joints, as a reset gives it back.
     pub intact: Arc<Model>,
     /// `None`: nothing can break.
     watch: Option<BreakWatch>,
@@ -83,6 +83,7 @@ impl World {
             return;
         }
         self.breaking.broken.clear();
+        self.unmoved = None;
         let intact = self.breaking.intact.clone();
         self.engine.refit(&intact, self.initial.clone(), self.settings.integrator);
         self.take(intact);

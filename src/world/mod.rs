@@ -2,6 +2,7 @@
 
 mod breaking;
 mod drive;
+mod pose;
 mod settings;
 mod snapshot;
 
@@ -13,6 +14,7 @@ use std::sync::Arc;
 
 pub use crate::solver::{AxisCommand, Mode, Work};
 pub use breaking::Broken;
+pub use pose::Side;
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
 
@@ -44,6 +46,8 @@ pub struct World {
     /// What is left of the robot.
     model: Arc<Model>,
     breaking: breaking::Breaking,
+    /// The model as it was before its fixed base was moved, if it was.
+    unmoved: Option<Arc<Model>>,
     settings: Settings,
     engine: Rbx,
     effects: Effects,
@@ -74,6 +78,7 @@ impl World {
             kinematics: Kinematics::new(&model),
             breaking: breaking::Breaking::new(&model),
             model,
+            unmoved: None,
             settings,
             interval: 0,
             stamp_ns: 0,
@@ -127,6 +132,11 @@ impl World {
         &self.commands
     }
 
+    /// Per axis, N·m or N: the drive torque really applied in the last step.
+    pub fn efforts(&self) -> &[f64] {
+        &self.engine.axes.effort
+    }
+
     /// The state.
     pub fn state(&self) -> &State {
         &self.engine.state
@@ -147,6 +157,8 @@ impl World {
         }
         self.initial.q.copy_from_slice(&self.engine.state.q);
         self.initial.angles.copy_from_slice(&self.engine.state.angles);
+        self.unmoved = None;
+        self.breaking.intact = self.model.clone();
         true
     }
 
@@ -206,6 +218,9 @@ impl World {
     /// Back to the initial state and time 0; every axis in its mode at start, every joint whole. Allocates only if one was apart.
     pub fn reset(&mut self) {
         self.mend_joints();
+        if let Some(model) = self.unmoved.take() {
+            self.model = model;
+        }
         self.engine.restart(&self.initial);
         for (i, axis) in self.model.axes.iter().enumerate() {
             self.commands[i] = match axis.mode {

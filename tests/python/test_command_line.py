@@ -107,7 +107,7 @@ def test_the_start_report_names_what_is_not_simulated_yet():
     simulator = Simulator(domain=random.randint(0, 101), urdf=None)
     lines = [simulator.process.stdout.readline() for _ in range(8)]
     simulator.stop()
-    for tag in ["<chain>", "<proxy>", "<surface>"]:
+    for tag in ["<chain self_collision>", "<proxy>", "<surface>"]:
         assert any(f"{tag} is read but not simulated yet" in line for line in lines), lines
 
 

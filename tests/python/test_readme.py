@@ -1,6 +1,7 @@
 """What the documents say is so: commands are run, clients are tried, tables and links are compared."""
 
 import functools
+import json
 import os
 import random
 import re
@@ -104,11 +105,13 @@ def test_the_comparison_of_outputs_can_fail():
 
 
 def test_the_scene_of_the_readme_is_accepted(tmp_path):
-    [scene] = blocks("yaml")
+    scene, script = blocks("yaml")
     (tmp_path / "scene.yaml").write_text(scene)
-    command = [BINARY, "simulate", ROOT / "urdf/origin.urdf", "--scene", tmp_path / "scene.yaml", "--duration", "0.01"]
-    result = subprocess.run(command, capture_output=True, text=True)
+    (tmp_path / "commands.yaml").write_text(script)
+    command = [BINARY, "simulate", ROOT / "urdf/origin.urdf", "--scene", tmp_path / "scene.yaml", "--duration", "1"]
+    result = subprocess.run([*command, "--script", tmp_path / "commands.yaml"], capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
+    assert not any("commands.yaml" in warning for warning in json.loads(result.stdout)["warnings"])
 
 
 def test_every_program_and_script_in_shell_blocks_is_there():

@@ -322,7 +322,7 @@ def test_a_servo_reaches_its_target_and_holds_it_against_gravity(pendulum, tmp_p
         (["--set", "swing=1,2,3"], ["--set swing=1,2,3", "AXIS=POSITION[,VELOCITY]"]),
         (["--set", "swing=nan"], ["--set swing=nan", "finite"]),
         (["--effort", "swng=1"], ["--effort", "'swng'", "swing"]),
-        (["--effort", "swing=1,2"], ["--effort swing=1,2", "AXIS=TORQUE"]),
+        (["--effort", "swing=1,2,3"], ["--effort swing=1,2,3", "AXIS=TORQUE[,SPEED]"]),
         (["--effort", "swing=inf"], ["--effort swing=inf", "finite"]),
         (["--servo", "swing=up"], ["--servo swing=up", "AXIS=POSITION"]),
         (["--effort", "swing=1", "--servo", "swing=1"], ["--servo swing=1", "already has a command"]),

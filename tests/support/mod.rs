@@ -47,6 +47,7 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         bodies: vec![],
         eulers: vec![],
         base: Base::Fixed,
+        base_pose: realnoid::math::Pose::identity(),
         root_link: 0,
         nq: 0,
         nv: 0,
@@ -54,6 +55,8 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         softs: vec![],
         couplings: vec![],
         breakables: vec![],
+        chains: vec![],
+        rigs: vec![],
         effects: Effects { gravity: true, drives: true, ..Effects::NONE },
     };
     m.bodies.push(body(&mut rng, 0, JointType::Revolute));

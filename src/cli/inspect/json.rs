@@ -1,11 +1,12 @@
 //! What is simulated, for programs.
 
 use super::super::load::Loaded;
+use super::groups;
 use crate::description::{Description, Link, PlacedShape};
 use crate::mass::{LinkBody, Method};
 use crate::math::{Mat3, Pose};
 use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, LinkInfo};
-use crate::monitor::{LinkValues, joint_link_values, link_values};
+use crate::monitor::{LinkValues, axis_faults, joint_link_values, link_values};
 use crate::shape::collision_shapes;
 use serde_json::{Value, json};
 
@@ -15,13 +16,20 @@ pub(super) fn json(l: &Loaded) -> Value {
     let m = &l.model;
     let values = link_values(m, &l.bodies);
     let links = l.description.links.iter().zip(&m.links).zip(l.bodies.iter().zip(&values));
-    let links: Vec<Value> = links.map(|((read, link), (body, values))| link_json(read, link, body, values)).collect();
+    let mut links: Vec<Value> =
+        links.map(|((read, link), (body, values))| link_json(read, link, body, values)).collect();
+    for (i, link) in links.iter_mut().enumerate() {
+        link["chain"] = json!(m.chain_of(i).map(|chain| &chain.root));
+    }
+    let faults = axis_faults(m);
     let joint_links: Vec<Value> =
         joint_link_values(m, &l.bodies).iter().map(|v| joint_link(&l.description, v)).collect();
     let effects: serde_json::Map<String, Value> =
         EFFECT_NAMES.iter().zip(m.effects.as_array()).map(|(n, on)| ((*n).to_owned(), json!(on))).collect();
     json!({"name": m.name, "mass": m.mass(), "bodies": m.bodies.len() - 1, "velocities": m.nv, "links": links,
-           "joint_links": joint_links, "axes": m.axes.iter().map(axis).collect::<Vec<_>>(), "effects": effects})
+           "joint_links": joint_links, "axes": m.axes.iter().zip(&faults).map(axis).collect::<Vec<_>>(),
+           "groups": groups::groups(&l.description, m, &faults), "chains": groups::chains(m), "rigs": groups::rigs(m),
+           "effects": effects})
 }
 
 fn link_json(read: &Link, link: &LinkInfo, body: &LinkBody, values: &LinkValues) -> Value {
@@ -58,7 +66,7 @@ fn placed(shape: &PlacedShape, x_lk: &Pose) -> Value {
     })
 }
 
-fn axis(a: &Axis) -> Value {
+fn axis((a, faults): (&Axis, &Vec<String>)) -> Value {
     let bound = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
     json!({
         "name": a.name,
@@ -71,6 +79,8 @@ fn axis(a: &Axis) -> Value {
         "damping": a.damping,
         "friction": a.friction,
         "mode": format!("{:?}", a.mode).to_lowercase(),
+        "valid": faults.is_empty(),
+        "faults": faults,
     })
 }
 

@@ -1,5 +1,6 @@
 //! `realnoid inspect`: what is simulated, in numbers and as a picture.
 
+mod groups;
 mod json;
 mod tables;
 mod values;

@@ -1,4 +1,4 @@
-//! `<joint_group>` and `<chain>`: what they name exists, and the joints of a group form what its type says.
+//! `<joint_group>`: what it names exists, and its joints form what its type says.
 
 use super::super::element::Element;
 use super::super::finding::Finding;
@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-6;
 /// One axis of a group: its letter and its joint.
 type Axis<'d> = (&'static str, &'d Joint);
 
-/// All groups and chains.
+/// All groups.
 pub(super) fn check(d: &Description, tags: &RobotTags, report: &mut Report) {
     let mut names: HashMap<&str, u32> = HashMap::new();
     let mut owners: HashMap<&str, &str> = HashMap::new();
@@ -25,17 +25,9 @@ pub(super) fn check(d: &Description, tags: &RobotTags, report: &mut Report) {
         }
         check_group(d, group, element, &mut owners, report);
     }
-    for (chain, element) in &tags.chains {
-        let joints = d.joints.iter().map(|j| j.name.as_str());
-        let roots = joints.chain(d.groups.iter().map(|g| g.name.as_str()));
-        must_exist("joint or joint_group", &chain.root, roots, ("root", element), report);
-        if let Some(anchor) = &chain.anchor {
-            must_exist("link", anchor, d.links.iter().map(|l| l.name.as_str()), ("anchor", element), report);
-        }
-    }
 }
 
-fn must_exist<'n>(
+pub(super) fn must_exist<'n>(
     what: &str,
     name: &str,
     known: impl Iterator<Item = &'n str> + Clone,
@@ -62,26 +54,25 @@ fn check_group<'d>(
     report: &mut Report,
 ) {
     let before = report.len();
-    let named = [("h", &group.h), ("p", &group.p), ("b", &group.b), ("e", &group.e)];
     let mut axes: Vec<Axis<'d>> = vec![];
-    for (letter, name) in named {
-        let Some(name) = name else { continue };
+    for (letter, name) in group.axes() {
         let joints = d.joints.iter().map(|j| j.name.as_str());
         if !must_exist("joint", name, joints, (letter, element), report) {
             continue;
         }
         refuse_second_owner(letter, name, &group.name, element, owners, report);
-        axes.extend(d.joints.iter().find(|j| j.name == *name).map(|joint| (letter, joint)));
+        axes.extend(d.joint(name).map(|joint| (letter, joint)));
     }
     refuse_wrong_types(&axes, element, report);
-    require_axes(group, element, report);
     if report.len() > before {
         return;
     }
     refuse_broken_path(&axes, element, report);
     if report.len() == before {
         check_shape(d, group.kind, &axes, element, report);
+        check_extension(&axes, element, report);
     }
+    tell_missing_axes(group, element, report);
 }
 
 fn refuse_second_owner<'d>(
@@ -105,10 +96,11 @@ fn refuse_wrong_types(axes: &[Axis], element: &Element, report: &mut Report) {
         let right = match joint.kind {
             JointKind::Revolute | JointKind::Continuous => !linear,
             JointKind::Prismatic => linear,
+            JointKind::Fixed => true,
             _ => false,
         };
         if !right {
-            let needed = if linear { "prismatic" } else { "revolute or continuous" };
+            let needed = if linear { "prismatic or fixed" } else { "revolute, continuous or fixed" };
             let message = format!("joint '{}' (line {}) cannot be the axis {letter}", joint.name, joint.at.line);
             let mend = format!("the axis {letter} takes a {needed} joint");
             report.add(Finding::error("group-axis-type", element.place_of(letter, report), message, mend));
@@ -116,26 +108,23 @@ fn refuse_wrong_types(axes: &[Axis], element: &Element, report: &mut Report) {
     }
 }
 
-fn require_axes(group: &JointGroup, element: &Element, report: &mut Report) {
-    let given = [("h", &group.h), ("p", &group.p), ("b", &group.b)];
-    let needed: &[&str] = match group.kind {
+/// J-6: an axis without a joint is physically fixed. Where the type would share it, that is worth a word.
+fn tell_missing_axes(group: &JointGroup, element: &Element, report: &mut Report) {
+    let shared: &[&str] = match group.kind {
         GroupKind::ThreeDof => &["h", "p", "b"],
         GroupKind::Cardan => &["h", "p"],
         GroupKind::CombinedHinge => &[],
     };
-    let missing: Vec<_> =
-        given.iter().filter(|(l, name)| needed.contains(l) && name.is_none()).map(|(l, _)| *l).collect();
-    let (message, mend) = if !missing.is_empty() {
-        (
-            format!("this type needs {}; {} is missing", needed.join(", "), missing.join(", ")),
-            "name the joint, or use type=\"combined_hinge\"",
-        )
-    } else if given.iter().all(|(_, name)| name.is_none()) {
-        ("a group needs at least one of h, p, b".to_string(), "name a joint, or take the group out")
-    } else {
-        return;
-    };
-    report.add(Finding::error("group-axis-missing", element.place(report), message, mend));
+    let missing: Vec<_> = shared.iter().filter(|letter| group.axes().all(|(l, _)| l != **letter)).copied().collect();
+    if group.axes().next().is_none() {
+        let message = "a group needs at least one of h, p, b, e".to_string();
+        let mend = "name a joint, or take the group out";
+        report.add(Finding::error("group-axis-missing", element.place(report), message, mend));
+    } else if !missing.is_empty() {
+        let message = format!("no joint is given for {}: physically fixed", missing.join(", "));
+        let mend = "name the joint if that axis turns";
+        report.add(Finding::note("group-axis-fixed", element.place(report), message, mend));
+    }
 }
 
 fn refuse_broken_path(axes: &[Axis], element: &Element, report: &mut Report) {
@@ -159,7 +148,8 @@ fn check_shape(d: &Description, kind: GroupKind, axes: &[Axis], element: &Elemen
         GroupKind::Cardan => 2,
         GroupKind::ThreeDof => 3,
     };
-    let stack = &axes[..shared.min(axes.len())];
+    let letters = &["h", "p", "b"][..shared];
+    let stack: Vec<Axis> = axes.iter().filter(|(letter, _)| letters.contains(letter)).copied().collect();
     for pair in stack.windows(2) {
         let [(upper, above), (lower, below)] = pair else { continue };
         refuse_own_origin((upper, lower), below, element, report);
@@ -173,7 +163,7 @@ fn check_shape(d: &Description, kind: GroupKind, axes: &[Axis], element: &Elemen
             report.add(Finding::error("group-branch", element.place_of(lower, report), message, mend));
         }
     }
-    refuse_skew_axes(stack, element, report);
+    refuse_skew_axes(&stack, element, report);
 }
 
 fn refuse_own_origin((upper, lower): (&str, &str), below: &Joint, element: &Element, report: &mut Report) {
@@ -203,16 +193,22 @@ fn refuse_massive_between((upper, lower): (&str, &str), link: &Link, element: &E
     report.add(Finding::error("group-mass", element.place_of(lower, report), message, mend));
 }
 
-/// At zero angles every axis of the stack is perpendicular to every other one.
+/// At zero angles every axis of the stack is perpendicular to every other one; only the first and the last may be skew,
+/// where the one between them does not move: it may be frozen at any angle (G-5).
 fn refuse_skew_axes(stack: &[Axis], element: &Element, report: &mut Report) {
+    let moves = |joint: &Joint| joint.kind != JointKind::Fixed;
+    let pitch_moves = stack.iter().any(|(letter, joint)| *letter == "p" && moves(joint));
     let mut frame = Quat::identity();
     let mut directions: Vec<(&str, Vec3)> = vec![];
     for (i, (letter, joint)) in stack.iter().enumerate() {
         if i > 0 {
             frame *= joint.origin.rotation();
         }
+        if !moves(joint) {
+            continue;
+        }
         let direction = frame * Vec3::from(joint.axis);
-        for (other, earlier) in &directions {
+        for (other, earlier) in directions.iter().filter(|(other, _)| pitch_moves || (*other, *letter) != ("h", "b")) {
             let cosine = earlier.dot(&direction);
             if cosine.abs() > TOLERANCE {
                 let angle = cosine.clamp(-1.0, 1.0).acos().to_degrees();
@@ -223,5 +219,27 @@ fn refuse_skew_axes(stack: &[Axis], element: &Element, report: &mut Report) {
             }
         }
         directions.push((letter, direction));
+    }
+}
+
+/// J-2, J-14: e slides along the line about which b turns, and between limits.
+fn check_extension(axes: &[Axis], element: &Element, report: &mut Report) {
+    let Some(("e", slide)) = axes.last().filter(|(_, joint)| joint.kind == JointKind::Prismatic) else { return };
+    let limited = slide.limit.as_ref().is_some_and(|l| l.lower.is_finite() && l.upper.is_finite());
+    if !limited {
+        let message =
+            format!("e is fixed or limited, but joint '{}' (line {}) has no range", slide.name, slide.at.line);
+        let mend = "give it <limit lower=\"…\" upper=\"…\" effort=\"…\" velocity=\"…\"/>";
+        report.add(Finding::error("group-extension-range", element.place_of("e", report), message, mend));
+    }
+    let Some((_, bank)) = axes.iter().find(|(letter, joint)| *letter == "b" && joint.kind != JointKind::Fixed) else {
+        return;
+    };
+    let (along, about) = (slide.origin.rotation() * Vec3::from(slide.axis), Vec3::from(bank.axis));
+    if along.cross(&about).norm() > TOLERANCE {
+        let angle = along.dot(&about).abs().clamp(0.0, 1.0).acos().to_degrees();
+        let message = format!("e is {angle:.4}° off the axis of b: it must lie on its extension");
+        let mend = format!("mend the <axis> or the rpy of '{}' (line {})", slide.name, slide.at.line);
+        report.add(Finding::error("group-extension", element.place_of("e", report), message, mend));
     }
 }

@@ -1,11 +1,13 @@
 //! Checks over the whole description, after all items have been read.
 
+mod chains;
 mod groups;
 mod inertias;
 mod masses;
 mod names;
 mod ranges;
 mod rigid;
+mod rigs;
 mod sides;
 mod softness;
 mod tree;
@@ -25,6 +27,8 @@ pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints
     inertias::check(d, robot, tree.as_ref(), report);
     masses::check(d, tree.as_ref(), report);
     groups::check(d, tags, report);
+    chains::check(d, tags, tree.is_some(), report);
+    rigs::check(d, tags, report);
     ranges::check(d, report);
     sides::check(d, report);
     softness::check(d, report);

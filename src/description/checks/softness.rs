@@ -2,7 +2,7 @@
 
 use super::super::finding::{Finding, Place};
 use super::super::report::Report;
-use super::super::{Constraint, Description, GroupKind, Joint, JointGroup};
+use super::super::{Constraint, Description, GroupKind, Joint, JointGroup, JointKind};
 
 type Value = fn(&Constraint) -> Option<f64>;
 const VALUES: [(&str, Value); 2] = [("erp", |c| c.erp), ("cfm", |c| c.cfm)];
@@ -21,14 +21,17 @@ pub(super) fn check(d: &Description, report: &mut Report) {
     }
 }
 
-/// The axes that share one joint, from the root outwards.
+/// The axes that share one joint, from the root outwards: those of a whole 3DOF, else h and p. Others are hinges.
 fn one_joint<'a>(d: &'a Description, group: &'a JointGroup) -> Vec<&'a Joint> {
-    let names = match group.kind {
-        GroupKind::ThreeDof => vec![&group.h, &group.p, &group.b],
-        GroupKind::Cardan => vec![&group.h, &group.p],
-        GroupKind::CombinedHinge => vec![],
+    let moving = |name: &'a Option<String>| {
+        let joint = d.joints.iter().find(|j| Some(&j.name) == name.as_ref())?;
+        (joint.kind != JointKind::Fixed).then_some(joint)
     };
-    names.into_iter().flatten().filter_map(|name| d.joints.iter().find(|j| j.name == *name)).collect()
+    match (group.kind, moving(&group.h), moving(&group.p), moving(&group.b)) {
+        (GroupKind::ThreeDof, Some(h), Some(p), Some(b)) => vec![h, p, b],
+        (GroupKind::ThreeDof | GroupKind::Cardan, Some(h), Some(p), _) => vec![h, p],
+        _ => vec![],
+    }
 }
 
 fn overruled(

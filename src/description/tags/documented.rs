@@ -21,6 +21,7 @@ fn tags() -> Vec<Tag> {
         joint::CONSTRAINT,
         robot::JOINT_GROUP,
         robot::CHAIN,
+        robot::SEPARATE_RIG,
     ]
 }
 

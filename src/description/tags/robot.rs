@@ -1,10 +1,10 @@
-//! `<realnoid version="1">` inside `<robot>`: joint_group, chain.
+//! `<realnoid version="1">` inside `<robot>`: joint_group, chain, separate_rig.
 
 use super::super::element::Element;
 use super::super::finding::Finding;
 use super::super::report::Report;
 use super::super::rules::{Attribute, Kind, Tag, Values};
-use super::super::{Chain, GroupKind, JointGroup};
+use super::super::{Chain, GroupKind, JointGroup, SeparateRig};
 
 pub(in super::super) const JOINT_GROUP: Tag = Tag {
     name: "joint_group",
@@ -29,8 +29,18 @@ pub(in super::super) const CHAIN: Tag = Tag {
     children: &[],
 };
 
+pub(in super::super) const SEPARATE_RIG: Tag = Tag {
+    name: "separate_rig",
+    attributes: &[
+        Attribute::required("name", Kind::Text),
+        Attribute::required("of", Kind::Text),
+        Attribute::optional("anchor", Kind::Text),
+    ],
+    children: &[],
+};
+
 /// Names of the tags that may stand here.
-pub(in super::super) const NAMES: &[&str] = &["joint_group", "chain"];
+pub(in super::super) const NAMES: &[&str] = &["joint_group", "chain", "separate_rig"];
 
 /// The only version of the tags there is.
 const VERSION: &str = "1";
@@ -40,6 +50,7 @@ const VERSION: &str = "1";
 pub(in super::super) struct RobotTags<'a> {
     pub groups: Vec<(JointGroup, Element<'a>)>,
     pub chains: Vec<(Chain, Element<'a>)>,
+    pub rigs: Vec<(SeparateRig, Element<'a>)>,
 }
 
 /// Reads the `<realnoid>` elements of the robot.
@@ -51,7 +62,8 @@ pub(in super::super) fn read<'a>(robot: &Element<'a>, report: &mut Report) -> Ro
     for element in super::collect(robot, NAMES, NAMES, report) {
         match element.tag() {
             "joint_group" => tags.groups.extend(read_group(&element, report).map(|group| (group, element))),
-            _ => tags.chains.extend(read_chain(&element, report).map(|chain| (chain, element))),
+            "chain" => tags.chains.extend(read_chain(&element, report).map(|chain| (chain, element))),
+            _ => tags.rigs.extend(read_rig(&element, report).map(|rig| (rig, element))),
         }
     }
     tags
@@ -93,6 +105,16 @@ fn read_chain(element: &Element, report: &mut Report) -> Option<Chain> {
         root: values.word("root")?.into(),
         anchor: text(&values, "anchor"),
         self_collision: values.flag_or("self_collision", true),
+    })
+}
+
+fn read_rig(element: &Element, report: &mut Report) -> Option<SeparateRig> {
+    let values = SEPARATE_RIG.read(element, report);
+    Some(SeparateRig {
+        at: element.place(report).at,
+        name: values.word("name")?.into(),
+        group: values.word("of")?.into(),
+        anchor: text(&values, "anchor"),
     })
 }
 
