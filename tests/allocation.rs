@@ -8,6 +8,7 @@ use realnoid::model::Base;
 use realnoid::world::{AxisCommand, Integrator, Settings, World};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::io::Write;
 
 struct Counting;
 
@@ -66,5 +67,45 @@ fn a_thousand_steps_allocate_nothing() {
             assert_eq!(n, 0, "{base:?} {integrator:?}");
             assert_eq!(snapshot.stats.steps, 1000);
         }
+    }
+}
+
+/// Soft joints, and joints that may break but hold, allocate nothing either; one that breaks does so once.
+#[test]
+fn soft_and_breakable_joints_allocate_only_when_they_break() {
+    let limb = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='0 0 -0.2'/><mass value='1'/>\
+             <inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>"
+        )
+    };
+    let text = format!(
+        "<robot name='r'><link name='stand'/>{}{}\
+         <joint name='a' type='continuous'><parent link='stand'/><child link='upper'/><axis xyz='0 1 0'/>\
+         <realnoid><constraint erp='0.3' cfm='1e-4' break_threshold='1e9'/></realnoid></joint>\
+         <joint name='b' type='continuous'><parent link='upper'/><child link='lower'/><origin xyz='0 0 -0.4'/>\
+         <axis xyz='0 1 0'/><realnoid><constraint break_threshold='THRESHOLD'/></realnoid></joint></robot>",
+        limb("upper"),
+        limb("lower")
+    );
+    // The lower limb weighs 9.8 N: it holds, or falls in the first step.
+    for (threshold, breaks) in [("20", false), ("5", true)] {
+        let mut file = tempfile::Builder::new().suffix(".urdf").tempfile().unwrap();
+        file.write_all(text.replace("THRESHOLD", threshold).as_bytes()).unwrap();
+        let source = Source { urdf: Some(file.path()), packages: &[] };
+        let model = load(source, Base::Fixed).unwrap_or_else(|report| panic!("{report}")).model;
+        let settings = Settings { steps_per_interval: 1, ..Settings::default() };
+        let mut world = World::new(model, settings).unwrap();
+        let mut snapshot = world.new_snapshot();
+        let first = counted(|| world.advance());
+        assert_eq!((first > 0, world.broken().len()), (breaks, usize::from(breaks)));
+        let later = counted(|| {
+            for _ in 0..500 {
+                world.advance();
+                world.write_snapshot(&mut snapshot);
+            }
+        });
+        assert_eq!(later, 0, "threshold {threshold}");
+        assert_eq!(snapshot.broken, world.broken());
     }
 }

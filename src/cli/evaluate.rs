@@ -3,10 +3,10 @@
 use super::args::{EvaluateArgs, numbers};
 use super::base_by_name;
 use super::load::load;
-use crate::dynamics::{Workspace, aba};
+use crate::dynamics::{BallIn, DofIn, Workspace, aba, aba_hybrid};
 use crate::engine::State;
-use crate::math::Vec3;
-use crate::model::{Base, Model};
+use crate::math::{V3, Vec3};
+use crate::model::{Base, JointType, Model};
 use serde::{Deserialize, Serialize};
 use std::io::{BufRead, Write};
 use std::process::ExitCode;
@@ -80,9 +80,24 @@ fn one(m: &Model, ws: &mut Workspace<f64>, input: &Input, gravity: [f64; 3]) -> 
     for axis in 0..n {
         s.add_axis_torque(m, axis, input.effort[axis], &mut tau);
     }
-    aba(m, ws, (&s.q, &s.v), &tau, gravity, &mut vdot);
+    accelerations(m, ws, &s, (&tau, gravity), &mut vdot);
     Ok(Output {
         acceleration: (0..n).map(|axis| s.axis_acceleration(m, axis, &vdot)).collect(),
         base_acceleration: if m.base == Base::Free { vdot[..6].to_vec() } else { vec![] },
     })
+}
+
+/// Soft joints are hard here: their force depends on a step, and there is none.
+fn accelerations(m: &Model, ws: &mut Workspace<f64>, s: &State, (tau, gravity): (&[f64], [f64; 3]), vdot: &mut [f64]) {
+    if m.softs.is_empty() {
+        return aba(m, ws, (&s.q, &s.v), tau, gravity, vdot);
+    }
+    for (input, torque) in ws.dofs.iter_mut().zip(tau) {
+        *input = DofIn::free(*torque);
+    }
+    for b in m.bodies.iter().filter(|b| b.joint == JointType::Spherical) {
+        ws.ball_in[b.ball] = BallIn { tau: V3::new(tau[b.v], tau[b.v + 1], tau[b.v + 2]), ..BallIn::default() };
+    }
+    m.softs.iter().for_each(|soft| ws.dofs[soft.v] = DofIn::locked(0.0));
+    aba_hybrid(m, ws, (&s.q, &s.v), gravity, vdot);
 }

@@ -2,7 +2,7 @@
 
 use crate::description::{self, Description, Finding, Severity, WORLD_ANCHOR};
 use crate::dynamics::singular_axes;
-use crate::engine::{ENGINE_NAMES, not_honoured};
+use crate::engine::{ENGINE_NAMES, State, come_apart, not_honoured};
 use crate::mass::{LinkBody, MassProperties, link_bodies, with_inertials};
 use crate::math::Pose;
 use crate::model::{Base, LinkFrame, Model};
@@ -124,7 +124,10 @@ pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, 
         let model = Model::build(&d, &simulated, base, base_pose);
         let singular = singular_axes(&model);
         findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
-        singular.is_empty().then_some((d, bodies, model))
+        let unsound = if singular.is_empty() { unsound_breaks(&d, &model) } else { vec![] };
+        let sound = singular.is_empty() && unsound.is_empty();
+        findings.extend(unsound);
+        sound.then_some((d, bodies, model))
     });
     Ok(Examined { file, text, findings, robot, meshes })
 }
@@ -151,6 +154,7 @@ fn loose_anchors(d: &Description, base: Base) -> Vec<Finding> {
 
 /// The joint that carries no inertia, or the root link of a free base, found by the link on its body.
 fn singular_finding(d: &Description, m: &Model, body: usize) -> Finding {
+    let body = carrier(m, body);
     let carried = |frame: &LinkFrame| matches!(frame, LinkFrame::OnBody { body: b, .. } if *b == body);
     let link = m.links.iter().position(|l| carried(&l.frame));
     let moving = m.links.iter().position(|l| carried(&l.frame) && !l.fixed);
@@ -169,4 +173,32 @@ fn singular_finding(d: &Description, m: &Model, body: usize) -> Finding {
         at,
         mend: "give this link, or those fixed to it, mass and inertia, or make the joint fixed".into(),
     }
+}
+
+/// The body itself, or, for a massless one that a soft joint adds, the one that the joint carries.
+fn carrier(m: &Model, body: usize) -> usize {
+    let has_link = |b: usize| m.links.iter().any(|l| matches!(l.frame, LinkFrame::OnBody { body, .. } if body == b));
+    let outwards = |b: &usize| m.bodies.iter().skip(*b + 1).position(|next| next.parent == *b).map(|n| b + 1 + n);
+    std::iter::successors(Some(body), outwards).find(|b| has_link(*b)).unwrap_or(body)
+}
+
+/// Joints whose break would leave something that cannot be simulated.
+fn unsound_breaks(d: &Description, m: &Model) -> Vec<Finding> {
+    let unsound = |body| !singular_axes(&come_apart(m, &State::initial(m), body).0).is_empty();
+    let found = m.breakables.iter().filter(|b| unsound(b.body)).map(|b| Finding {
+        severity: Severity::Error,
+        code: "singular-break",
+        message:
+            "once this joint has come apart, something is left that has no inertia in a direction in which it moves"
+                .into(),
+        element: format!("joint '{}'", b.joint),
+        at: d
+            .joints
+            .iter()
+            .find(|j| j.name == b.joint)
+            .and_then(|j| j.constraint.as_ref())
+            .map_or_else(Default::default, |c| c.at),
+        mend: "give the links on both sides of the joint mass and inertia, or take the break_threshold out".into(),
+    });
+    found.collect()
 }

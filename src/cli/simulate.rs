@@ -222,7 +222,7 @@ impl<'a> Plan<'a> {
             (
                 s.fallback_steps,
                 "steps were made by implicit_midpoint, because an axis began or ceased to stand still, a servo was on its \
-                 way, or a viscous term was stiff",
+                 way, a viscous term was stiff, or a joint is soft or a fixed one that may break",
             ),
             (s.halvings, "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same"),
             (s.unsettled_steps, "steps ended before the axis laws had settled: allow more --iterations"),
@@ -240,6 +240,8 @@ impl<'a> Plan<'a> {
         if !outcome.finite && s.diverged_steps == 0 {
             warnings.push("a value is not finite: the state can be represented, its energy or momentum cannot".into());
         }
+        let broken = self.world.broken();
+        warnings.extend(broken.iter().map(|b| format!("joint '{}' {b}, more than its break_threshold", b.joint)));
         warnings.extend(counted.iter().filter(|(n, _)| *n > 0).map(|(n, text)| format!("{n} {text}")));
         json!({
             "steps": s.steps,
@@ -259,6 +261,7 @@ impl<'a> Plan<'a> {
             "guarded_energy": s.guarded_energy,
             "energy": self.ledger(outcome.energy),
             "pole_steps": s.pole_steps,
+            "broken_joints": broken.iter().map(|b| json!({"joint": *b.joint, "time": b.time, "force": b.force})).collect::<Vec<_>>(),
             "warnings": warnings,
         })
     }

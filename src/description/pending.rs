@@ -31,7 +31,6 @@ pub(super) const PENDING: &[Pending] = &[
     tag("surface", "there is no contact yet"),
     tag("damping", "bodies are not damped"),
     tag("deactivate", "bodies stay active"),
-    tag("constraint", "joints do not yield and do not break"),
     attribute("chain", "self_collision", "there is no contact inside a chain yet"),
 ];
 

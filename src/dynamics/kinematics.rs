@@ -119,7 +119,8 @@ fn turned_y(r: &M3<f64>, angle: f64) -> M3<f64> {
     r.mm(&M3::rows(V3::new(c, 0.0, s), V3::new(0.0, 1.0, 0.0), V3::new(-s, 0.0, c)))
 }
 
-fn body_pose(k: &Kinematics, body: usize) -> Pose {
+/// Frame of a body in the world.
+pub fn body_pose(k: &Kinematics, body: usize) -> Pose {
     pose(&k.r[body], k.p[body])
 }
 

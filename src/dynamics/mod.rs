@@ -13,6 +13,7 @@ mod eliminate;
 mod energy;
 mod integrate;
 mod joint;
+mod joint_force;
 mod kinematics;
 mod rnea;
 
@@ -23,7 +24,8 @@ pub use crba::crba;
 pub use energy::{Energy, Momentum, energy, momentum};
 pub use integrate::{coordinate_rates, exponential_step, move_coordinates, normalize, turn};
 pub use joint::joint_transform;
-pub use kinematics::{Kinematics, kinematics, link_pose, link_twist};
+pub use joint_force::JointForces;
+pub use kinematics::{Kinematics, body_pose, kinematics, link_pose, link_twist};
 pub use rnea::rnea;
 
 /// Inputs of one velocity coordinate to the hybrid dynamics: a free one gets a torque, a locked one an acceleration.
@@ -52,9 +54,9 @@ impl<T: crate::math::Real> DofIn<T> {
     pub fn implicit(tau: T, diagonal: T) -> Self {
         Self { diagonal, plain: false, ..Self::free(tau) }
     }
-    /// Locked to an acceleration.
+    /// Locked to an acceleration. The diagonal has no effect then but to keep a division finite where nothing has inertia.
     #[inline(always)]
     pub fn locked(acceleration: T) -> Self {
-        Self { tau: T::of(0.0), diagonal: T::of(0.0), free: T::of(0.0), acceleration, plain: false }
+        Self { tau: T::of(0.0), diagonal: T::of(1.0), free: T::of(0.0), acceleration, plain: false }
     }
 }

@@ -9,7 +9,7 @@ use super::guard::Guard;
 use super::rbx::{Rbx, State, StepReport, StepSettings};
 use crate::dynamics::move_coordinates;
 use crate::model::Model;
-use crate::solver::{AxisCommand, StepStart};
+use crate::solver::{AxisCommand, StepStart, write_softs};
 
 /// The middle of the step may still move by this, relative to 1 rad/s or m/s and the speed, when the iteration ends; what
 /// is left after the last pass is smaller by the rate of contraction.
@@ -109,6 +109,7 @@ impl Rbx {
     ) -> End {
         let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, mean: true };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
+        write_softs(m, &mut self.ws, &start, s.effects, self.whole_step);
         self.qdd.copy_from_slice(&mid.guess);
         self.set_middle(m, mid, s.h);
         let (mut pass, mut last) = (0, f64::INFINITY);
@@ -165,6 +166,7 @@ impl Rbx {
     /// Takes the step with the accelerations of the last pass.
     fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
         self.axes.finish(m, &self.ws, h, &self.qdd);
+        self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
         for k in 0..m.nv {
             let change = h * self.qdd[k];
             self.state.v[k] = mid.start.v[k] + change;

@@ -1,11 +1,15 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
+mod apart;
+mod breaking;
 mod guard;
 mod honour;
 mod midpoint;
 mod rbx;
 mod rk4;
 
+pub use apart::come_apart;
+pub use breaking::{BreakWatch, Overload};
 pub use honour::not_honoured;
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};
 

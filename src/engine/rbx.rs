@@ -4,8 +4,8 @@ use super::midpoint::Midpoint;
 use super::rk4::Stages;
 use crate::dynamics::{Workspace, exponential_step, normalize};
 use crate::math::{V3, Vec3};
-use crate::model::{AxisSlot, Effects, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef, StepStart};
+use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
+use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef, StepStart, write_softs};
 
 /// How the state is advanced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -135,7 +135,7 @@ impl State {
 
     /// Sets the base of a free robot: position (m) and unit quaternion (x, y, z, w) in the world.
     pub fn set_base_pose(&mut self, m: &Model, xyz: [f64; 3], xyzw: [f64; 4]) {
-        if let Some(b) = m.bodies.get(1).filter(|b| b.joint == JointType::Floating && b.parent == 0) {
+        if let Some(b) = free_base(m) {
             self.q[b.q..b.q + 3].copy_from_slice(&xyz);
             self.q[b.q + 3..b.q + 7].copy_from_slice(&[xyzw[3], xyzw[0], xyzw[1], xyzw[2]]);
             normalize(&mut self.q[b.q + 3..b.q + 7]);
@@ -144,7 +144,7 @@ impl State {
 
     /// Sets the twist of a free base, in the base frame.
     pub fn set_base_twist(&mut self, m: &Model, angular: Vec3, linear: Vec3) {
-        if let Some(b) = m.bodies.get(1).filter(|b| b.joint == JointType::Floating && b.parent == 0) {
+        if let Some(b) = free_base(m) {
             for k in 0..3 {
                 (self.v[b.v + k], self.v[b.v + 3 + k]) = (angular[k], linear[k]);
             }
@@ -172,6 +172,11 @@ impl State {
     fn finite(&self) -> bool {
         self.q.iter().chain(&self.v).all(|x| x.is_finite())
     }
+}
+
+/// The body of a free base. On a fixed one, what floats on the world has come off.
+fn free_base(m: &Model) -> Option<&Body> {
+    m.bodies.get(1).filter(|b| m.base == Base::Free && b.joint == JointType::Floating && b.parent == 0)
 }
 
 /// What one step needs to know.
@@ -218,6 +223,8 @@ pub struct Rbx {
     pub(super) ws: Workspace<f64>,
     pub(super) qdd: Vec<f64>,
     pub(super) before: State,
+    /// The step, s, of which a halved one is a part.
+    pub(super) whole_step: f64,
     midpoint: Option<Midpoint>,
     stages: Option<Stages>,
 }
@@ -231,6 +238,7 @@ impl Rbx {
             ws: Workspace::new(m),
             qdd: vec![0.0; m.nv],
             before: state.clone(),
+            whole_step: 0.0,
             midpoint: None,
             stages: None,
             state,
@@ -256,6 +264,7 @@ impl Rbx {
     pub fn step(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings) -> StepReport {
         let mut report = StepReport::default();
         self.before.copy_from(&self.state);
+        self.whole_step = s.h;
         let explicit = s.integrator == Integrator::Rk4;
         if !(explicit && self.rk4(m, commands, s, &mut report)) {
             report.fell_back = explicit;
@@ -281,6 +290,7 @@ impl Rbx {
         let at = self.state.as_ref();
         let start = StepStart { state: at, commands, h: s.h, mean: false };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
+        write_softs(m, &mut self.ws, &start, s.effects, self.whole_step);
         let mut passes = 0;
         let settled = loop {
             passes += 1;
@@ -292,6 +302,7 @@ impl Rbx {
             }
         };
         self.axes.finish(m, &self.ws, s.h, &self.qdd);
+        self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);

@@ -1,5 +1,7 @@
 //! Description + mass properties → Model.
 
+mod soften;
+
 use super::chain::chains;
 use super::membership::memberships;
 use super::rig::rigs;
@@ -10,6 +12,7 @@ use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointK
 use crate::mass::MassProperties;
 use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
+use soften::{BETWEEN, HINGE, POINT, SLIDE, WELD, facing};
 use std::collections::HashMap;
 
 /// How the root link is held.
@@ -150,23 +153,44 @@ impl<'a> Builder<'a> {
         let (body, offset) = self.seats[link];
         let frame = offset * j.origin.pose();
         let joint = match j.kind {
-            JointKind::Fixed => {
-                self.hang(link, child, (body, frame));
-                self.model.links[child].fixed = true;
-                return child;
-            }
+            JointKind::Fixed => return self.attach_fixed(link, index, (body, frame)),
             JointKind::Floating => JointType::Floating,
             JointKind::Spherical => JointType::Spherical,
             JointKind::Prismatic => JointType::Prismatic,
             JointKind::Revolute | JointKind::Continuous | JointKind::Planar => JointType::Revolute,
         };
         let turn = if joint.nv() == 1 { along_z(Vec3::from(j.axis)) } else { Quat::identity() };
-        let new = self.add_body(body, joint, frame * turn);
+        let constrained = match joint {
+            JointType::Revolute => HINGE,
+            JointType::Prismatic => SLIDE,
+            _ => &[],
+        };
+        let (body, frame) = self.soften((body, frame * turn), constrained, self.softness(&[index]));
+        let new = self.add_body(body, joint, frame);
+        if joint != JointType::Floating {
+            self.note_threshold(new, &[index]);
+        }
         if joint.nv() == 1 {
             let b = &self.model.bodies[new];
             self.slots.insert(index, AxisSlot::Scalar { q: b.q, v: b.v });
         }
         self.hang(link, child, (new, Pose::from_parts(Translation3::identity(), turn.inverse())));
+        child
+    }
+
+    /// Rigidly, unless the joint yields or may break.
+    fn attach_fixed(&mut self, link: usize, index: usize, seat: Seat) -> usize {
+        let child = self.link_index[self.d.joints[index].child.as_str()];
+        let softness = self.softness(&[index]);
+        let mut end = self.soften(seat, WELD, softness);
+        if softness.is_none() && self.may_break(&[index]) {
+            end = self.hold(seat);
+        }
+        self.hang(link, child, end);
+        self.model.links[child].fixed = end == seat;
+        if end != seat {
+            self.note_threshold(end.0, &[index]);
+        }
         child
     }
 
@@ -178,7 +202,10 @@ impl<'a> Builder<'a> {
         let (frame, sense) = EulerFrame::frame(&axes);
         let basis = quat(&frame);
         let (parent, offset) = self.seats[link];
-        let body = self.add_body(parent, JointType::Spherical, offset * h.origin.pose() * basis);
+        let seat = (parent, offset * h.origin.pose() * basis);
+        let (parent, frame) = self.soften(seat, POINT, self.softness(joints));
+        let body = self.add_body(parent, JointType::Spherical, frame);
+        self.note_threshold(body, joints);
         let (q, v) = (self.model.bodies[body].q, self.model.bodies[body].v);
         let group = self.model.eulers.len();
         self.model.eulers.push(EulerFrame { body, q, v, sense });
@@ -197,12 +224,43 @@ impl<'a> Builder<'a> {
         let (x, z) = (Vec3::from(h.axis), rp * Vec3::from(p.axis));
         let basis = quat(&Mat3::from_columns(&[x, z.cross(&x), z]));
         let (parent, offset) = self.seats[link];
-        let body = self.add_body(parent, JointType::Universal, offset * h.origin.pose() * basis);
+        let seat = (parent, offset * h.origin.pose() * basis);
+        let back = basis.inverse();
+        if let Some(softness) = self.softness(joints) {
+            return self.attach_soft_universal(link, joints, seat, (softness, [back, back * rp]));
+        }
+        let body = self.add_body(parent, JointType::Universal, seat.1);
+        self.note_threshold(body, joints);
         let (q, v) = (self.model.bodies[body].q, self.model.bodies[body].v);
         self.slots.insert(joints[0], AxisSlot::Scalar { q, v });
         self.slots.insert(joints[1], AxisSlot::Scalar { q: q + 1, v: v + 1 });
-        let back = basis.inverse();
         self.hang_group(link, body, &[h, p], &[back, back * rp])
+    }
+
+    /// H, P → two hinges with what yields before and between them: in every position of H, the turn that a cardan joint
+    /// constrains is about the line perpendicular to both.
+    fn attach_soft_universal(
+        &mut self,
+        link: usize,
+        joints: &[usize],
+        seat: Seat,
+        (softness, ends): (Softness, [Quat; 2]),
+    ) -> usize {
+        let [h, p] = [0, 1].map(|k| &self.d.joints[joints[k]]);
+        let (between, tip) = (self.link_index[h.child.as_str()], self.link_index[p.child.as_str()]);
+        let (parent, frame) = self.soften(seat, POINT, Some(softness));
+        let turned = Pose::from_parts(Translation3::identity(), facing(0).inverse());
+        let first = self.add_body(parent, JointType::Revolute, frame * facing(0));
+        self.hang(link, between, (first, turned * ends[0]));
+        let (parent, frame) = self.soften((first, turned), BETWEEN, Some(softness));
+        let second = self.add_body(parent, JointType::Revolute, frame);
+        self.hang(between, tip, (second, Pose::from_parts(Translation3::identity(), ends[1])));
+        self.note_threshold(second, joints);
+        for (joint, body) in joints.iter().zip([first, second]) {
+            let (q, v) = (self.model.bodies[body].q, self.model.bodies[body].v);
+            self.slots.insert(*joint, AxisSlot::Scalar { q, v });
+        }
+        tip
     }
 
     /// Seats the links of a group: those inside move with a part of the turns, the last one is the body's.

@@ -10,7 +10,13 @@ pub struct Softness {
     pub cfm: f64,
 }
 
-/// One direction in which a soft joint yields: a coordinate of its own whose error is its position.
+impl Softness {
+    /// Of a coordinate that never moves: a fixed joint that may break.
+    pub const HELD: Self = Self { erp: 0.0, cfm: 0.0 };
+}
+
+/// One direction in which a soft joint yields: a coordinate of its own whose error is its position. With CFM 0 it does not
+/// yield, but is held where it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftDof {
     /// Index into q.
@@ -37,7 +43,7 @@ pub struct Coupling {
 /// A joint that comes apart when the force through it exceeds a threshold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Breakable {
-    /// Body that the joint carries.
+    /// Body that the joint carries; of a soft joint, the last one.
     pub body: usize,
     /// Name of the URDF joint whose threshold it is: the least one of a group.
     pub joint: String,

@@ -40,7 +40,7 @@ impl Effects {
             limits: any(|a| a.lower.is_finite() || a.upper.is_finite()),
             drives: !m.axes.is_empty(),
             rotor_inertia: any(|a| a.drive.rotor_inertia > 0.0),
-            compliance: !m.softs.is_empty(),
+            compliance: m.softs.iter().any(|s| s.softness.cfm > 0.0),
             mimic: !m.couplings.is_empty(),
             breaking: !m.breakables.is_empty(),
         }

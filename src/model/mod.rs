@@ -91,7 +91,7 @@ pub struct LinkInfo {
     pub name: String,
     /// Index of the parent link; `None` for the root.
     pub parent: Option<usize>,
-    /// True if the joint to the parent is fixed (its transform never changes).
+    /// True if the joint to the parent is fixed and neither yields nor breaks (its transform never changes).
     pub fixed: bool,
     /// Monitor tag.
     pub monitor: Option<MonitorFrame>,
@@ -210,7 +210,8 @@ pub struct Model {
     pub nv: usize,
     /// Number of spherical joints.
     pub balls: usize,
-    /// Degrees of freedom that a soft joint (J-18, CFM > 0) adds; none where every joint is hard.
+    /// Degrees of freedom that soft joints (J-18, CFM > 0), and fixed joints that may break, add; none where there is no such
+    /// joint.
     pub softs: Vec<SoftDof>,
     /// Axes that follow others (`<mimic>`).
     pub couplings: Vec<Coupling>,

@@ -4,11 +4,11 @@ use super::commands::RefusalKind;
 use super::counts::{CommandCounts, CommandTopic};
 use super::messages::{DiagnosticArray, DiagnosticStatus, Header, KeyValue, Level, Time};
 use crate::monitor::{Percentiles, Timing};
-use crate::world::Stats;
+use crate::world::{Broken, Stats};
 use std::time::Instant;
 
 /// What the publishing thread has seen of the latest sample.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Latest {
     /// Simulated time, ns.
     pub stamp_ns: i64,
@@ -18,6 +18,8 @@ pub struct Latest {
     pub stats: Stats,
     /// Is the state finite?
     pub finite: bool,
+    /// Joints that have come apart.
+    pub broken: Vec<Broken>,
 }
 
 /// What else counts.
@@ -106,12 +108,12 @@ impl Diagnostics {
     }
 
     fn simulation(&self, latest: &Latest) -> DiagnosticStatus {
-        let state = if latest.finite {
-            (Level::Ok, "finite")
-        } else {
-            (Level::Error, "diverged: stands still at the last finite state")
+        let state = match (latest.finite, latest.broken.is_empty()) {
+            (false, _) => (Level::Error, "diverged: stands still at the last finite state"),
+            (_, false) => (Level::Warn, "joints have come apart"),
+            _ => (Level::Ok, "finite"),
         };
-        let values = vec![
+        let mut values = vec![
             pair("simulated time [s]", format!("{:.9}", latest.stamp_ns as f64 * 1e-9)),
             pair("control intervals", latest.interval),
             pair("steps", latest.stats.steps),
@@ -119,7 +121,9 @@ impl Diagnostics {
             pair("unsettled steps", latest.stats.unsettled_steps),
             pair("pole steps", latest.stats.pole_steps),
             pair("finite", latest.finite),
+            pair("broken joints", latest.broken.len()),
         ];
+        values.extend(latest.broken.iter().map(|b| pair(&format!("broken: {}", b.joint), b)));
         self.status("simulation", state, values)
     }
 

@@ -83,7 +83,8 @@ impl<'a> PublishLoop<'a> {
             let (outlet, latest) = (&mut self.connection.outlet, &mut self.latest);
             let any = self.end.next(|s| {
                 outlet.publish(s, tf_rate);
-                *latest = Some(Latest { stamp_ns: s.stamp_ns, interval: s.interval, stats: s.stats, finite: s.finite });
+                let (stamp_ns, interval, stats, finite) = (s.stamp_ns, s.interval, s.stats, s.finite);
+                *latest = Some(Latest { stamp_ns, interval, stats, finite, broken: s.broken.clone() });
             });
             if !any {
                 break;
@@ -97,13 +98,20 @@ impl<'a> PublishLoop<'a> {
     }
 
     fn diagnose(&mut self) {
-        let Some(latest) = self.latest else { return };
+        let Some(latest) = &self.latest else { return };
         let losses = Losses { dropped: self.end.dropped(), refused_by_dds: self.refused_by_dds() };
-        let report = self.report.report(&latest, losses, &self.live.counts);
+        let report = self.report.report(latest, losses, &self.live.counts);
         let _ = self.connection.diagnostics.publish(report);
         let log = &self.connection.log;
         if !latest.finite {
             log.warn_once("finite", "a step would have given values that are not finite: the simulation stands still at the state before it");
+        }
+        for broken in &latest.broken {
+            let joint = &broken.joint;
+            log.warn_once(
+                &format!("broken {joint}"),
+                format!("joint '{joint}' {broken}: more than its break_threshold"),
+            );
         }
         if self.report.total.rebases > 0 {
             let lost = self.report.total.lost_ns as f64 * 1e-9;
@@ -114,7 +122,7 @@ impl<'a> PublishLoop<'a> {
 
     fn summary(&self) -> String {
         let total = &self.report.total;
-        let stamp_ns = self.latest.map_or(0, |l| l.stamp_ns);
+        let stamp_ns = self.latest.as_ref().map_or(0, |l| l.stamp_ns);
         format!(
             "simulated {:.3} s in {} control intervals, real-time factor {:.4}\n{}overruns {}, deadline set anew {}, dropped snapshots {}, refused by DDS {}, refused commands {}\n",
             stamp_ns as f64 * 1e-9,

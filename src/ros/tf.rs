@@ -53,9 +53,9 @@ impl Frames {
 
     fn message(&self, snapshot: &Snapshot, fixed: bool) -> TFMessage {
         let stamp = Time::from_ns(snapshot.stamp_ns);
-        let asked = self.links.iter().zip(&snapshot.link_pose).filter(|(f, _)| f.fixed == fixed);
-        let transforms = asked.map(|(frame, x_wc)| {
-            let (parent, x_pc) = self.in_parent(frame, x_wc, snapshot);
+        let asked = self.links.iter().enumerate().filter(|(_, f)| f.fixed == fixed);
+        let transforms = asked.map(|(link, frame)| {
+            let (parent, x_pc) = self.in_parent(link, snapshot);
             TransformStamped {
                 header: Header { stamp, frame_id: parent.into() },
                 child_frame_id: frame.name.clone(),
@@ -65,8 +65,11 @@ impl Frames {
         TFMessage { transforms: transforms.collect() }
     }
 
-    fn in_parent(&self, frame: &Frame, x_wc: &Pose, snapshot: &Snapshot) -> (&str, Pose) {
-        match frame.parent {
+    /// Name of the parent and pose in it. The parent of a link that has come off is the world.
+    fn in_parent(&self, link: usize, snapshot: &Snapshot) -> (&str, Pose) {
+        let x_wc = &snapshot.link_pose[link];
+        let cut_off = snapshot.cut_off.get(link).is_some_and(|cut_off| *cut_off);
+        match self.links[link].parent.filter(|_| !cut_off) {
             Some(parent) => (&self.links[parent].name, snapshot.link_pose[parent].inv_mul(x_wc)),
             None => (WORLD, *x_wc),
         }
@@ -95,5 +98,8 @@ mod tests {
         let fixed = frames.fixed(&snapshot).transforms;
         assert_eq!(fixed[0].header.frame_id, WORLD);
         assert!((fixed[1].transform.translation.x - 2.0).abs() < 1e-15);
+        let cut = Snapshot { cut_off: vec![false, true, false], ..snapshot };
+        let moving = frames.moving(&cut).transforms;
+        assert_eq!((moving[0].header.frame_id.as_str(), moving[0].transform.translation.x), (WORLD, 1.0));
     }
 }

@@ -88,7 +88,7 @@ pub struct AxisSet {
     pub effort: Vec<f64>,
     /// Work since the start.
     pub work: Work,
-    paid: (f64, f64),
+    pub(super) paid: (f64, f64),
     pub(super) mean: bool,
     best: usize,
     patience: u32,
@@ -155,7 +155,8 @@ impl AxisSet {
         at_pole
     }
 
-    /// At the pole of a group, H has no torque of its own: it turns about the same line as B.
+    /// At the pole of a group, H has no torque of its own: it turns about the same line as B. Nothing acts on an axis whose
+    /// joint has come apart.
     fn ungraspable(&self, axis: &Axis) -> bool {
         match axis.slot {
             AxisSlot::Euler { group, angle: 0 } => self.rates[group].at_pole,

@@ -8,9 +8,12 @@ mod command;
 mod drive;
 mod inputs;
 mod law;
+mod refit;
 mod smooth;
+mod soft;
 
 pub use axis_set::{AxisSet, Outcome, StateRef, StepStart, Work};
 pub use command::{AxisCommand, Mode};
 pub use drive::Brakes;
 pub use law::{AxisInput, Law, law};
+pub use soft::write_softs;

@@ -1,5 +1,6 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
+mod breaking;
 mod drive;
 mod pose;
 mod settings;
@@ -12,6 +13,7 @@ use crate::model::{Effects, Model};
 use std::sync::Arc;
 
 pub use crate::solver::{AxisCommand, Mode, Work};
+pub use breaking::Broken;
 pub use pose::Side;
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
@@ -41,7 +43,9 @@ pub struct Stats {
 /// One simulated world. A clone made between intervals goes on with the same bits.
 #[derive(Clone, Debug)]
 pub struct World {
+    /// What is left of the robot.
     model: Arc<Model>,
+    breaking: breaking::Breaking,
     /// The model as it was before its fixed base was moved, if it was.
     unmoved: Option<Arc<Model>>,
     settings: Settings,
@@ -72,6 +76,7 @@ impl World {
             engine,
             commands: vec![AxisCommand::IDLE; model.axes.len()],
             kinematics: Kinematics::new(&model),
+            breaking: breaking::Breaking::new(&model),
             model,
             unmoved: None,
             settings,
@@ -84,7 +89,7 @@ impl World {
         Ok(world)
     }
 
-    /// The model.
+    /// The model; once joints have come apart ([`World::broken`]), what is left of it: the same axes and links, other bodies.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
@@ -137,21 +142,28 @@ impl World {
         &self.engine.state
     }
 
-    /// Puts the world into a state, which also becomes the one that [`World::reset`] goes back to.
+    /// Puts the world into a state of the model with all its joints, which also becomes the one that [`World::reset`] goes back to.
     pub fn set_initial_state(&mut self, state: State) {
         self.initial = state;
         self.reset();
     }
 
     /// Remembers where everything is now as the state that [`World::reset`] goes back to (B-13, B-14): poses
-    /// and angles; the velocities at start stay what they were.
-    pub fn remember(&mut self) {
+    /// and angles; the velocities at start stay what they were. `false`, and nothing is remembered, while a joint is apart: the
+    /// initial state is one of the whole robot.
+    pub fn remember(&mut self) -> bool {
+        if !self.broken().is_empty() {
+            return false;
+        }
         self.initial.q.copy_from_slice(&self.engine.state.q);
         self.initial.angles.copy_from_slice(&self.engine.state.angles);
         self.unmoved = None;
+        self.breaking.intact = self.model.clone();
+        true
     }
 
-    /// Advances one control interval; allocates nothing, cannot panic. A world that has diverged stands still.
+    /// Advances one control interval; allocates nothing but when a joint comes apart, cannot panic. A world that has diverged
+    /// stands still.
     pub fn advance(&mut self) {
         let scaled = self.settings.control_interval_ns as f64 * self.settings.time_scale + self.rest_ns;
         let whole = scaled.floor();
@@ -162,11 +174,13 @@ impl World {
             return;
         }
         let step = self.step_settings();
-        for _ in 0..self.settings.steps_per_interval {
+        for to_come in (0..self.settings.steps_per_interval).rev() {
             if self.stats.diverged_steps > 0 {
                 break;
             }
+            self.watch_joints();
             self.step(&step);
+            self.break_joints(&step, self.time() - f64::from(to_come) * step.h);
         }
         self.update();
     }
@@ -201,8 +215,9 @@ impl World {
         if self.effects.gravity { self.settings.gravity } else { [0.0; 3] }
     }
 
-    /// Back to the initial state and time 0; every axis in its mode at start.
+    /// Back to the initial state and time 0; every axis in its mode at start, every joint whole. Allocates only if one was apart.
     pub fn reset(&mut self) {
+        self.mend_joints();
         if let Some(model) = self.unmoved.take() {
             self.model = model;
         }
@@ -232,6 +247,8 @@ impl World {
             effort: vec![0.0; axes],
             link_pose: vec![Pose::identity(); links],
             link_twist: vec![Twist::default(); links],
+            cut_off: vec![false; links],
+            broken: Vec::with_capacity(self.breaking.intact.breakables.len()),
             ..Snapshot::default()
         };
         self.write_snapshot(&mut s);
@@ -248,11 +265,14 @@ impl World {
         s.effort.copy_from_slice(&self.engine.axes.effort);
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
+            s.cut_off[link] = link != m.root_link && m.links[link].parent.is_none();
             s.link_twist[link] = link_twist(m, &self.kinematics, (&state.q, &state.v), &state.angles, link);
         }
         let e = self.energy();
         (s.kinetic_energy, s.potential_energy) = (e.kinetic, e.potential);
         s.stats = self.stats;
+        s.broken.clear();
+        s.broken.extend_from_slice(self.broken());
         s.finite = self.stats.diverged_steps == 0;
     }
 

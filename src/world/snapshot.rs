@@ -19,6 +19,10 @@ pub struct Snapshot {
     pub link_pose: Vec<Pose>,
     /// Per link: velocity of the link frame's origin, along the link's own axes.
     pub link_twist: Vec<Twist>,
+    /// Per link: has the joint to its parent come apart? Its frame is then one of the world's.
+    pub cut_off: Vec<bool>,
+    /// The joints that have come apart.
+    pub broken: Vec<super::Broken>,
     /// J.
     pub kinetic_energy: f64,
     /// J, zero with every centre of mass at the world's origin height.

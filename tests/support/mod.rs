@@ -1,6 +1,8 @@
 //! Random trees for the physics tests: any mixture of joints, bodies with proper inertias.
 #![allow(dead_code)]
 
+pub mod urdf;
+
 use realnoid::math::{M3, Mat3, Quat, S3, V3, Vec3};
 use realnoid::model::{
     Axis, AxisKind, AxisSlot, Base, Body, DriveLimits, Effects, JointType, LinkFrame, LinkInfo, Model, Softness,

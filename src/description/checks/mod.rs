@@ -9,6 +9,7 @@ mod ranges;
 mod rigid;
 mod rigs;
 mod sides;
+mod softness;
 mod tree;
 
 use super::Description;
@@ -30,6 +31,7 @@ pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints
     rigs::check(d, tags, report);
     ranges::check(d, report);
     sides::check(d, report);
+    softness::check(d, report);
 }
 
 fn place_of_link(link: &Link) -> Place {

@@ -53,7 +53,7 @@ pub(in super::super) fn read(
     for element in super::collect(joint, NAMES, &[], report) {
         match element.tag() {
             "drive" => drive = Some(read_drive(&element, kind, report)),
-            _ => constraint = Some(read_constraint(&element, report)),
+            _ => constraint = Some(read_constraint(&element, kind, report)),
         }
     }
     (drive, constraint)
@@ -108,14 +108,44 @@ fn warn_of_swapped_resistances(drive: &Drive, element: &Element, report: &mut Re
     }
 }
 
-fn read_constraint(element: &Element, report: &mut Report) -> Constraint {
+fn read_constraint(element: &Element, kind: JointKind, report: &mut Report) -> Constraint {
     let values = CONSTRAINT.read(element, report);
-    Constraint {
+    let constraint = Constraint {
         at: element.place(report).at,
         erp: values.number("erp"),
         stop_erp: values.number("stop_erp"),
         cfm: values.number("cfm"),
         stop_cfm: values.number("stop_cfm"),
         break_threshold: values.number("break_threshold"),
+    };
+    if kind == JointKind::Floating {
+        note_nothing_to_constrain(element, report);
+    } else {
+        judge_softness(&constraint, element, report);
+    }
+    constraint
+}
+
+/// E-2: an item that cannot be honoured is told.
+fn note_nothing_to_constrain(element: &Element, report: &mut Report) {
+    for item in CONSTRAINT.attributes.iter().filter(|a| element.value(a.name).is_some()) {
+        let message = format!("{} has no effect: a floating joint constrains nothing", item.name);
+        let place = element.place_of(item.name, report);
+        report.add(Finding::warning("constraint-without-effect", place, message, "take it out"));
+    }
+}
+
+fn judge_softness(constraint: &Constraint, element: &Element, report: &mut Report) {
+    let (erp, cfm) = (constraint.erp.unwrap_or(0.0), constraint.cfm.unwrap_or(0.0));
+    if constraint.erp.is_some() && cfm == 0.0 {
+        let message = "erp has no effect on the engine rbx while cfm is 0: a hard joint has no error to reduce";
+        let place = element.place_of("erp", report);
+        let mend = "give a cfm greater than 0 if the joint is to yield";
+        report.add(Finding::note("erp-without-cfm", place, message.into(), mend));
+    }
+    if cfm > 0.0 && erp == 0.0 {
+        let message = format!("cfm {cfm} without erp is a damper without a spring: the joint drifts apart under load");
+        let mend = "give an erp greater than 0; a spring k and a damper c make erp = h k/(h k + c), cfm = 1/(h k + c)";
+        report.add(Finding::warning("drifting-joint", element.place_of("cfm", report), message, mend));
     }
 }

@@ -1,0 +1,85 @@
+//! The force that goes through each joint, averaged over a step.
+//!
+//! What lies beyond a joint moves under its weight m g and the force f that the joint transmits, so over a step of h seconds
+//!
+//! ```text
+//! f = (P⁺ − P⁻)/h − m g
+//! ```
+//!
+//! with P its linear momentum at the end and the beginning. This holds for any integrator, and counts impacts in full.
+
+use super::{Kinematics, kinematics};
+use crate::math::{Pose, V3};
+use crate::model::{JointType, Model};
+
+/// Forces through the joints of one model. Makes its memory once.
+#[derive(Clone, Debug)]
+pub struct JointForces {
+    kinematics: Kinematics,
+    /// Per body: mass of what its joint carries, kg.
+    mass: Vec<f64>,
+    before: Vec<V3<f64>>,
+    after: Vec<V3<f64>>,
+    /// State that `after` belongs to: as a rule the next step begins with it.
+    ended: (Vec<f64>, Vec<f64>),
+    /// Where the fixed base was then.
+    base: Pose,
+}
+
+impl JointForces {
+    /// Room for this model.
+    pub fn new(m: &Model) -> Self {
+        let n = m.bodies.len();
+        let mut mass: Vec<f64> = m.bodies.iter().map(|b| b.mass).collect();
+        for_children(m, |parent, child| mass[parent] += mass[child]);
+        let (before, after) = (vec![V3::default(); n], vec![V3::default(); n]);
+        // No state is equal to this one.
+        let ended = (vec![f64::NAN; m.nq], vec![f64::NAN; m.nv]);
+        Self { kinematics: Kinematics::new(m), mass, before, after, ended, base: m.base_pose }
+    }
+
+    /// Takes the state `q` (nq), `v` (nv) at the beginning of a step.
+    pub fn begin(&mut self, m: &Model, q: &[f64], v: &[f64]) {
+        if self.ended.0 == q && self.ended.1 == v && self.base == m.base_pose {
+            std::mem::swap(&mut self.before, &mut self.after);
+        } else {
+            momenta(m, &mut self.kinematics, (q, v), &mut self.before);
+        }
+    }
+
+    /// Takes the state at the end of the step.
+    pub fn end(&mut self, m: &Model, q: &[f64], v: &[f64]) {
+        momenta(m, &mut self.kinematics, (q, v), &mut self.after);
+        self.ended.0.copy_from_slice(q);
+        self.ended.1.copy_from_slice(v);
+        self.base = m.base_pose;
+    }
+
+    /// Force on the body through its joint in the step of `h` seconds between the two states under gravity (m/s²), along
+    /// the axes of the world, N. 0 for a floating joint within the tree, which transmits nothing.
+    pub fn force(&self, body: usize, gravity: [f64; 3], h: f64) -> V3<f64> {
+        let g = V3::new(gravity[0], gravity[1], gravity[2]);
+        (self.after[body] - self.before[body]) * (1.0 / h) - g * self.mass[body]
+    }
+}
+
+/// Linear momentum of what each joint carries, along the axes of the world, kg·m/s.
+fn momenta(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), out: &mut [V3<f64>]) {
+    kinematics(m, k, q, v);
+    for (i, b) in m.bodies.iter().enumerate() {
+        out[i] = k.r[i].mv(k.v[i] * b.mass + k.w[i].cross(b.mc));
+    }
+    for_children(m, |parent, child| {
+        let carried = out[child];
+        out[parent] += carried;
+    });
+}
+
+/// Every joint that transmits a force, the outermost first.
+fn for_children(m: &Model, mut add: impl FnMut(usize, usize)) {
+    for (i, b) in m.bodies.iter().enumerate().skip(1).rev() {
+        if b.joint != JointType::Floating {
+            add(b.parent, i);
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Joints that break (J-18): who carries too much.
+
+use super::State;
+use crate::dynamics::JointForces;
+use crate::model::Model;
+
+/// A joint that carried more than its threshold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overload {
+    /// Index into `Model::breakables`.
+    pub breakable: usize,
+    /// Magnitude of the force through the joint, averaged over the step, N.
+    pub force: f64,
+}
+
+/// Watches the joints with a break threshold. Makes its memory once.
+#[derive(Clone, Debug)]
+pub struct BreakWatch {
+    forces: JointForces,
+    overloads: Vec<Overload>,
+}
+
+impl BreakWatch {
+    /// Room for this model; `None` if none of its joints breaks.
+    pub fn new(m: &Model) -> Option<Self> {
+        (!m.breakables.is_empty())
+            .then(|| Self { forces: JointForces::new(m), overloads: Vec::with_capacity(m.breakables.len()) })
+    }
+
+    /// Takes the state before a step.
+    pub fn begin(&mut self, m: &Model, state: &State) {
+        self.forces.begin(m, &state.q, &state.v);
+    }
+
+    /// The joints that carried more than their threshold in the step of `h` seconds that led to this state, from the root
+    /// outwards.
+    pub fn end(&mut self, m: &Model, state: &State, gravity: [f64; 3], h: f64) -> &[Overload] {
+        self.forces.end(m, &state.q, &state.v);
+        self.overloads.clear();
+        for (breakable, joint) in m.breakables.iter().enumerate() {
+            let f = self.forces.force(joint.body, gravity, h);
+            let force = f.dot(f).sqrt();
+            if force > joint.threshold {
+                self.overloads.push(Overload { breakable, force });
+            }
+        }
+        &self.overloads
+    }
+}

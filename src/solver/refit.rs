@@ -1,0 +1,18 @@
+//! The axis set after joints have come apart, or have been made whole again.
+
+use super::AxisSet;
+use crate::model::{AxisSlot, Model};
+
+impl AxisSet {
+    /// Goes on with a model of the same axes. Those that have come apart forget what they did. Allocates where the model has more
+    /// coordinates than the one before.
+    pub fn refit(&mut self, m: &Model) {
+        self.rates.resize(m.eulers.len(), Default::default());
+        self.weight.resize(m.nv, 1.0);
+        for (i, axis) in m.axes.iter().enumerate() {
+            if matches!(axis.slot, AxisSlot::Apart { .. }) {
+                (self.memory[i], self.effort[i], self.speed[i]) = (0, 0.0, 0.0);
+            }
+        }
+    }
+}
