@@ -11,9 +11,12 @@ mod check;
 mod crba;
 mod eliminate;
 mod energy;
+mod factor;
 mod integrate;
 mod joint;
 mod kinematics;
+mod layout;
+mod response;
 mod rnea;
 
 pub use aba::{Dof, Workspace, aba, aba_fused, aba_hybrid};
@@ -24,6 +27,8 @@ pub use energy::{Energy, Momentum, energy, momentum};
 pub use integrate::{coordinate_rates, exponential_step, normalize};
 pub use joint::joint_transform;
 pub use kinematics::{Kinematics, kinematics, link_pose, link_twist};
+pub use layout::{CHUNK, Layout};
+pub use response::{Mobility, Push, Response};
 pub use rnea::rnea;
 
 /// Inputs of one velocity coordinate to the hybrid dynamics: a free one gets a torque, a locked one an acceleration.

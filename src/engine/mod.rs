@@ -1,5 +1,6 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
+mod coupled;
 mod rbx;
 
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};

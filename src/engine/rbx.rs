@@ -44,7 +44,7 @@ pub struct State {
 }
 
 impl State {
-    /// All angles at 0, or at the stop next to it; at rest.
+    /// All angles at 0, or at the stop next to it; followers where their leaders put them; at rest.
     pub fn initial(m: &Model) -> Self {
         let mut s = Self { q: m.neutral(), v: vec![0.0; m.nv], angles: vec![[0.0; 3]; m.eulers.len()] };
         for axis in 0..m.axes.len() {
@@ -53,6 +53,7 @@ impl State {
                 s.set_axis(m, axis, a.lower.max(a.upper.min(0.0)), 0.0);
             }
         }
+        s.couple_in_range(m);
         s
     }
 
@@ -289,7 +290,8 @@ impl Rbx {
             }
             self.axes.write_smooth(m, &mut self.ws, self.state.as_ref());
             aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), s.gravity, &mut self.qdd);
-            if !self.axes.stage_fits(m, &self.ws, s.h) {
+            let coupled = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), (s.h, s.passes), &mut self.qdd);
+            if !coupled || !self.axes.stage_fits(m, &self.ws, s.h) {
                 return false;
             }
             coordinate_rates(m, &self.state.q, &self.state.v, &mut st.rates);

@@ -251,6 +251,7 @@ impl<'a> Builder<'a> {
                 self.model.axes.push(axis(j, *slot));
             }
         }
+        self.model.couplings = super::coupling::couplings(self.d, &self.model);
         self.model.effects = Effects::called_for(&self.model);
     }
 }

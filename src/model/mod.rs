@@ -5,6 +5,7 @@
 
 mod build;
 mod constraint;
+mod coupling;
 mod drive;
 mod effects;
 mod group;

@@ -5,6 +5,7 @@
 //! that do not fit move at once while that helps; else only the last of them (block principal pivoting with Murty's rule
 //! as the fallback; Júdice and Pires 1994), which ends because the mass matrix is positive definite.
 
+use super::couplings::Couplings;
 use super::law::{Law, law};
 use super::{AxisCommand, AxisInput};
 use crate::dynamics::{DofIn, Workspace, aba_hybrid};
@@ -51,6 +52,8 @@ pub struct AxisSet {
     pub(super) speed: Vec<f64>,
     /// Per axis: drive torque really applied.
     pub effort: Vec<f64>,
+    /// Rows that hold followers to their leaders, if there are any.
+    pub(super) couplings: Option<Box<Couplings>>,
 }
 
 impl AxisSet {
@@ -66,6 +69,7 @@ impl AxisSet {
             rates: vec![EulerRates::default(); model.eulers.len()],
             speed: vec![0.0; n],
             effort: vec![0.0; n],
+            couplings: Couplings::new(model),
         }
     }
 
@@ -73,6 +77,9 @@ impl AxisSet {
     pub fn reset(&mut self) {
         self.memory.fill(0);
         self.effort.fill(0.0);
+        if let Some(couplings) = &mut self.couplings {
+            couplings.reset();
+        }
     }
 
     /// Sets up the laws of a step of `h` seconds and the first guess of each axis' place. True if a 3DOF group is at its
@@ -120,7 +127,8 @@ impl AxisSet {
             self.write_inputs(m, ws, h);
             aba_hybrid(m, ws, (s.q, s.v), gravity, qdd);
             done += 1;
-            let misfits = self.misfits(m, ws, (h, qdd));
+            let loose = self.couple(m, ws, s, (h, passes), qdd);
+            let misfits = self.misfits(m, ws, (h, qdd)) + loose;
             if misfits == 0 || done >= passes.max(1) {
                 self.finish(m, ws, (h, qdd));
                 return Outcome { passes: done, settled: misfits == 0 };

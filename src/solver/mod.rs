@@ -5,9 +5,16 @@
 
 mod axis_set;
 mod command;
+mod cone;
+mod couplings;
+mod finish;
+mod gauss_seidel;
 mod law;
+mod rows;
 mod smooth;
 
 pub use axis_set::{AxisSet, Outcome, StateRef};
 pub use command::{AxisCommand, Mode};
+pub use cone::{ConeBlock, Plane, disc};
 pub use law::{AxisInput, Law, SERVO_TIME, STOP_ERP, law};
+pub use rows::{FINISH_ROWS, Kind, Row, Rows, Solved};

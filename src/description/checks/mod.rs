@@ -3,6 +3,7 @@
 mod groups;
 mod inertias;
 mod masses;
+mod mimic;
 mod names;
 mod ranges;
 mod rigid;
@@ -24,6 +25,7 @@ pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints
     inertias::check(d, robot, tree.as_ref(), report);
     masses::check(d, tree.as_ref(), report);
     groups::check(d, tags, report);
+    mimic::check(d, report);
     ranges::check(d, report);
     sides::check(d, report);
 }

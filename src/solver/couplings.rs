@@ -1,0 +1,289 @@
+//! Axes that follow others (`<mimic>`): one equality row per follower, solved after each pass of the hybrid dynamics, before
+//! the axes are asked whether they fit their laws. So a follower's stop holds its leader, and a leader's servo carries its
+//! followers, without a law that knows of the other.
+
+use super::axis_set::{AxisSet, StateRef};
+use super::law::{LOWER, UPPER};
+use super::rows::{Kind, Rows};
+use crate::dynamics::{Push, Response, Workspace};
+use crate::math::V3;
+use crate::model::{AxisSlot, Coupling, Model};
+
+/// Share of a follower's deviation that one step takes back. The rows keep the velocities together to rounding, so it has
+/// only rounding and the curvature of a 3DOF group's angles to take back, and adds no energy beyond that.
+const ERP: f64 = 0.2;
+/// The same in the stages of an explicit step: time constant of a critically damped return, in steps.
+const RETURN: f64 = 10.0;
+/// A row that moves this much less than it would without the locks of a spherical joint is held by them.
+const HELD: f64 = 1e-10;
+/// Velocities of two locked axes that agree, relative.
+const AGREE: f64 = 1e-9;
+/// Positions over the step that agree: what rounding makes of the speed that reaches a stop, relative.
+const ROUNDING: f64 = 1e-13;
+
+/// The rows of all couplings. Makes its memory once.
+#[derive(Clone, Debug)]
+pub struct Couplings {
+    response: Response,
+    rows: Rows,
+    pairs: Vec<Pair>,
+    /// Step of the impulses that are kept, s.
+    h: f64,
+}
+
+/// One coupling, and what the present pass found of it.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    coupling: Coupling,
+    follower: Seat,
+    leader: Seat,
+    pushes: [Push; 2],
+    /// Velocity of the follower against its leader's without the row, minus the one wanted.
+    bias: f64,
+    /// How large that is as rounding.
+    slack: f64,
+}
+
+/// The joint of an axis.
+#[derive(Clone, Copy, Debug)]
+struct Seat {
+    body: usize,
+    /// Which of the joint's velocities; an angle of a group uses all.
+    index: usize,
+}
+
+/// Position, velocity and acceleration of an axis.
+#[derive(Clone, Copy)]
+struct Motion {
+    q: f64,
+    v: f64,
+    a: f64,
+}
+
+impl Couplings {
+    /// Room for the couplings of this model; `None` if there are none in force.
+    pub fn new(m: &Model) -> Option<Box<Self>> {
+        let pair = |c: &Coupling| {
+            let (follower, leader) = (Seat::of(m, c.follower)?, Seat::of(m, c.leader)?);
+            Some(Pair { coupling: *c, follower, leader, pushes: Default::default(), bias: 0.0, slack: 0.0 })
+        };
+        let pairs: Vec<Pair> = m.couplings_in_force().iter().filter_map(pair).collect();
+        if pairs.is_empty() {
+            return None;
+        }
+        let response = Response::new(m);
+        let mut rows = Rows::new(response.layout.width());
+        for pair in &pairs {
+            let mut ids = vec![];
+            response.layout.join(pair.follower.body, pair.leader.body, &mut ids);
+            rows.add(Kind::EQUALITY, 1, &ids);
+        }
+        Some(Box::new(Self { response, rows, pairs, h: 0.0 }))
+    }
+
+    /// Forgets the last step.
+    pub fn reset(&mut self) {
+        self.rows.reset();
+        self.h = 0.0;
+    }
+
+    /// Solves the rows of `self.pairs` for a step of `h` and applies their impulses. True if that converged.
+    fn solve(&mut self, m: &Model, ws: &mut Workspace<f64>, q: &[f64], (h, sweeps): (f64, u32), qdd: &mut [f64]) -> bool {
+        if self.h > 0.0 && self.h != h {
+            self.rows.scale_impulses(h / self.h);
+        }
+        self.h = h;
+        self.response.refresh(m, ws);
+        for (k, pair) in self.pairs.iter().enumerate() {
+            let mobility = self.response.row(m, ws, q, &pair.pushes, self.rows.response(k, 0));
+            self.rows.row(k, 0).bias = pair.bias;
+            if mobility.free > HELD * mobility.unlocked {
+                self.rows.seal(k);
+            } else {
+                self.rows.switch_off(k);
+            }
+        }
+        let solved = self.rows.solve(sweeps);
+        for k in 0..self.pairs.len() {
+            self.push(k, self.rows.row_impulse(k) / h);
+        }
+        self.response.apply(m, ws, q, qdd);
+        solved.converged
+    }
+
+    fn push(&mut self, k: usize, force: f64) {
+        if force != 0.0 {
+            for push in &self.pairs[k].pushes {
+                self.response.push(push, force);
+            }
+        }
+    }
+}
+
+impl Seat {
+    fn of(m: &Model, axis: usize) -> Option<Self> {
+        match m.axes[axis].slot {
+            AxisSlot::Apart { .. } => None,
+            AxisSlot::Euler { group, .. } => Some(Self { body: m.eulers[group].body, index: 0 }),
+            AxisSlot::Scalar { v, .. } => {
+                let carries = |i: &usize| (m.bodies[*i].v..m.bodies[*i].v + m.bodies[*i].joint.nv()).contains(&v);
+                let body = (1..m.bodies.len()).find(carries)?;
+                Some(Self { body, index: v - m.bodies[body].v })
+            }
+        }
+    }
+}
+
+impl AxisSet {
+    /// After a pass of an implicit step of `h` seconds: brings the ends of the step together, in `qdd` and `ws`. Returns how
+    /// many couplings do not hold; then the laws have to be asked again.
+    pub(super) fn couple(
+        &mut self,
+        m: &Model,
+        ws: &mut Workspace<f64>,
+        s: StateRef,
+        (h, sweeps): (f64, u32),
+        qdd: &mut [f64],
+    ) -> usize {
+        let Some(mut couplings) = self.couplings.take() else { return 0 };
+        for k in 0..couplings.pairs.len() {
+            let pair = couplings.pairs[k];
+            let (follower, leader, ratio) = self.motions(m, s, &pair, qdd, false);
+            let error = follower.q - pair.coupling.position(leader.q);
+            let bias = follower.v + h * follower.a - ratio * (leader.v + h * leader.a) + ERP * error / h;
+            couplings.pairs[k] = self.prepared(m, pair, bias, (follower, leader, h));
+        }
+        let converged = couplings.solve(m, ws, s.q, (h, sweeps), qdd);
+        let mut loose = usize::from(!converged);
+        let mut forced = false;
+        for k in 0..couplings.pairs.len() {
+            let pair = couplings.pairs[k];
+            if couplings.rows.is_off(k) && pair.bias.abs() > pair.slack {
+                loose += 1;
+                let force = self.break_loose(m, ws, &pair);
+                couplings.push(k, force);
+                forced |= force != 0.0;
+            }
+        }
+        if forced {
+            couplings.response.apply(m, ws, s.q, qdd);
+        }
+        self.couplings = Some(couplings);
+        loose
+    }
+
+    /// As [`AxisSet::couple`] in a stage of an explicit step: brings the accelerations together. False if the step is better
+    /// made otherwise.
+    pub fn couple_smooth(
+        &mut self,
+        m: &Model,
+        ws: &mut Workspace<f64>,
+        s: StateRef,
+        (h, sweeps): (f64, u32),
+        qdd: &mut [f64],
+    ) -> bool {
+        let Some(mut couplings) = self.couplings.take() else { return true };
+        for k in 0..couplings.pairs.len() {
+            let pair = couplings.pairs[k];
+            let (follower, leader, ratio) = self.motions(m, s, &pair, qdd, true);
+            let error = follower.q - pair.coupling.position(leader.q);
+            let speed = follower.v - ratio * leader.v;
+            let back = (2.0 * speed + error / (RETURN * h)) / RETURN;
+            let bias = h * (follower.a - ratio * leader.a) + back;
+            couplings.pairs[k] = self.prepared(m, pair, bias, (follower, leader, h));
+        }
+        let converged = couplings.solve(m, ws, s.q, (h, sweeps), qdd);
+        let held = |k: usize| couplings.rows.is_off(k) && couplings.pairs[k].bias.abs() > couplings.pairs[k].slack;
+        let loose = (0..couplings.pairs.len()).any(held);
+        self.couplings = Some(couplings);
+        converged && !loose
+    }
+
+    /// Motion of follower and leader, and the ratio. The acceleration of an angle of a group is that of its gradient,
+    /// `g·ω̇`, as the implicit laws have it, or the `true` one of the angle itself.
+    fn motions(&self, m: &Model, s: StateRef, pair: &Pair, qdd: &[f64], real: bool) -> (Motion, Motion, f64) {
+        let motion = |axis: usize| {
+            let (q, v) = self.axis_state(m, &m.axes[axis], s);
+            Motion { q, v, a: self.acceleration(m, s, axis, qdd, real) }
+        };
+        (motion(pair.coupling.follower), motion(pair.coupling.leader), pair.coupling.ratio)
+    }
+
+    fn acceleration(&self, m: &Model, s: StateRef, axis: usize, qdd: &[f64], real: bool) -> f64 {
+        match m.axes[axis].slot {
+            AxisSlot::Apart { .. } => 0.0,
+            AxisSlot::Scalar { v, .. } => qdd[v],
+            AxisSlot::Euler { group, angle } => {
+                let (e, gradient) = (&m.eulers[group], self.rates[group].gradient);
+                let w = V3::new(s.v[e.v], s.v[e.v + 1], s.v[e.v + 2]);
+                let change = V3::new(qdd[e.v], qdd[e.v + 1], qdd[e.v + 2]);
+                let turning = e.direction_rates(s.angles[group], gradient.map(|g| g.dot(w)));
+                gradient[angle].dot(if real { change - turning } else { change })
+            }
+        }
+    }
+
+    /// The pair with its forces and bias.
+    fn prepared(&self, m: &Model, pair: Pair, bias: f64, (f, l, h): (Motion, Motion, f64)) -> Pair {
+        let ratio = pair.coupling.ratio;
+        let pushes = [
+            self.push_of(m, pair.coupling.follower, pair.follower, 1.0),
+            self.push_of(m, pair.coupling.leader, pair.leader, -ratio),
+        ];
+        let speeds = f.v.abs() + h * f.a.abs() + (ratio * l.v).abs() + h * (ratio * l.a).abs();
+        let positions = (f.q.abs() + (ratio * l.q).abs() + pair.coupling.offset.abs()) / h;
+        Pair { pushes, bias, slack: AGREE * speeds + ROUNDING * positions, ..pair }
+    }
+
+    fn push_of(&self, m: &Model, axis: usize, seat: Seat, factor: f64) -> Push {
+        let mut push = Push { body: seat.body, ..Push::default() };
+        if let AxisSlot::Euler { group, angle } = m.axes[axis].slot {
+            let g = self.rates[group].gradient[angle] * factor;
+            push.own[..3].copy_from_slice(&[g.x, g.y, g.z]);
+        } else {
+            push.own[seat.index] = factor;
+        }
+        push
+    }
+
+    /// Follower and leader are both locked, to speeds that do not agree. The force between them grows until the first of
+    /// them leaves its riser: that force is returned. A drive that nothing bounds yields to the other by its speed instead,
+    /// the follower's before the leader's; stops do not yield.
+    fn break_loose(&mut self, m: &Model, ws: &Workspace<f64>, pair: &Pair) -> f64 {
+        let c = pair.coupling;
+        let sense = -pair.bias.signum();
+        let forces = [(c.follower, 1.0), (c.leader, -c.ratio)].map(|(axis, factor)| self.room(m, ws, axis, factor * sense));
+        let force = forces[0].min(forces[1]);
+        if force.is_finite() {
+            return sense * force;
+        }
+        let [follower, leader] = [c.follower, c.leader].map(|axis| self.yielding_riser(axis));
+        if let Some(riser) = follower {
+            self.laws[c.follower].risers[riser].speed -= pair.bias;
+        } else if let Some(riser) = leader.filter(|_| c.ratio != 0.0) {
+            self.laws[c.leader].risers[riser].speed += pair.bias / c.ratio;
+        }
+        0.0
+    }
+
+    /// The force between a locked axis and its partner at which the axis leaves its riser; `factor` is the torque on it per
+    /// force. Infinite if nothing bounds it, or if it is not locked.
+    fn room(&self, m: &Model, ws: &Workspace<f64>, axis: usize, factor: f64) -> f64 {
+        let (law, place) = (&self.laws[axis], self.place[axis]);
+        if place.is_multiple_of(2) || factor == 0.0 {
+            return f64::INFINITY;
+        }
+        let riser = &law.risers[place / 2];
+        let torque = self.reaction(m, ws, axis) + law.slope * riser.speed;
+        let left = if factor > 0.0 { torque - riser.right } else { riser.left - torque };
+        // A little beyond, so that the law sees it.
+        (left.max(0.0) + 1e-6 * (1.0 + torque.abs())) / factor.abs()
+    }
+
+    /// The riser an axis stands on, if a drive without bound holds it there.
+    fn yielding_riser(&self, axis: usize) -> Option<usize> {
+        let (law, place) = (&self.laws[axis], self.place[axis]);
+        let kinds = if place.is_multiple_of(2) { LOWER } else { law.risers[place / 2].kinds };
+        (kinds & (LOWER | UPPER) == 0).then_some(place / 2)
+    }
+}
