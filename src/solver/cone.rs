@@ -125,20 +125,22 @@ fn bounded(h: &Plane, r: [f64; 2], radius: &Radius) -> [f64; 2] {
     h.back(x)
 }
 
-/// Where the length is the radius: Newton's iteration between a lower and an upper bound that close in.
+/// Where the length is the radius: the zero of radius over length minus 1, which is nearly a straight line in s, by
+/// Newton's iteration between a lower and an upper bound that close in.
 fn root(h: &Plane, (r, lever): ([f64; 2], [f64; 2]), base: f64) -> f64 {
     let (mut low, mut high) = (0.0, f64::INFINITY);
-    let mut s = (length(r) / base - h.values[0].max(h.values[1])).max(h.values[0].min(h.values[1]) * 1e-3);
+    let mut s = 0.0;
     for _ in 0..STEPS {
         let inverse = [1.0 / (h.values[0] + s), 1.0 / (h.values[1] + s)];
         let x = [-r[0] * inverse[0], -r[1] * inverse[1]];
         let size = length(x);
-        let gap = size - base - lever[0] * x[0] - lever[1] * x[1];
-        if gap > 0.0 { low = s } else { high = s }
+        let ratio = (base + lever[0] * x[0] + lever[1] * x[1]) / size;
+        if ratio < 1.0 { low = s } else { high = s }
         // dx/ds = −x / (h + s)
         let turn = [x[0] * inverse[0], x[1] * inverse[1]];
-        let slope = lever[0] * turn[0] + lever[1] * turn[1] - (x[0] * turn[0] + x[1] * turn[1]) / size;
-        let newton = s - gap / slope;
+        let along = (x[0] * turn[0] + x[1] * turn[1]) / (size * size);
+        let slope = ratio * along - (lever[0] * turn[0] + lever[1] * turn[1]) / size;
+        let newton = s + (1.0 - ratio) / slope;
         let next = if newton > low && newton < high {
             newton
         } else if high.is_finite() {
@@ -146,8 +148,8 @@ fn root(h: &Plane, (r, lever): ([f64; 2], [f64; 2]), base: f64) -> f64 {
         } else {
             2.0 * s + h.values[0] + h.values[1]
         };
-        if (next - s).abs() <= f64::EPSILON * s || gap == 0.0 {
-            return next;
+        if (next - s).abs() <= f64::EPSILON * s || ratio == 1.0 {
+            return s;
         }
         s = next;
     }
