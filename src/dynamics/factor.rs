@@ -1,8 +1,8 @@
 //! Square roots of the inverse inertias that the elimination leaves.
 
 use super::Workspace;
-use super::ball::{Ball, BallIn};
 use super::articulated::Spatial;
+use super::ball::{Ball, BallIn};
 use crate::math::{M3, S3, V3};
 use crate::model::{JointType, Model};
 

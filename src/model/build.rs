@@ -281,10 +281,7 @@ const STOP_ERP: f64 = 0.2;
 
 fn stop(j: &Joint) -> Softness {
     let c = j.constraint.as_ref();
-    Softness {
-        erp: c.and_then(|c| c.stop_erp).unwrap_or(STOP_ERP),
-        cfm: c.and_then(|c| c.stop_cfm).unwrap_or(0.0),
-    }
+    Softness { erp: c.and_then(|c| c.stop_erp).unwrap_or(STOP_ERP), cfm: c.and_then(|c| c.stop_cfm).unwrap_or(0.0) }
 }
 
 fn world() -> Body {

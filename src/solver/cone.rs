@@ -135,7 +135,11 @@ fn root(h: &Plane, (r, lever): ([f64; 2], [f64; 2]), base: f64) -> f64 {
         let x = [-r[0] * inverse[0], -r[1] * inverse[1]];
         let size = length(x);
         let ratio = (base + lever[0] * x[0] + lever[1] * x[1]) / size;
-        if ratio < 1.0 { low = s } else { high = s }
+        if ratio < 1.0 {
+            low = s
+        } else {
+            high = s
+        }
         // dx/ds = −x / (h + s)
         let turn = [x[0] * inverse[0], x[1] * inverse[1]];
         let along = (x[0] * turn[0] + x[1] * turn[1]) / (size * size);

@@ -88,7 +88,14 @@ impl Couplings {
     }
 
     /// Solves the rows of `self.pairs` for a step of `h` and applies their impulses. True if that converged.
-    fn solve(&mut self, m: &Model, ws: &mut Workspace<f64>, q: &[f64], (h, sweeps): (f64, u32), qdd: &mut [f64]) -> bool {
+    fn solve(
+        &mut self,
+        m: &Model,
+        ws: &mut Workspace<f64>,
+        q: &[f64],
+        (h, sweeps): (f64, u32),
+        qdd: &mut [f64],
+    ) -> bool {
         if self.h > 0.0 && self.h != h {
             self.rows.scale_impulses(h / self.h);
         }
@@ -252,7 +259,8 @@ impl AxisSet {
     fn break_loose(&mut self, m: &Model, ws: &Workspace<f64>, pair: &Pair) -> f64 {
         let c = pair.coupling;
         let sense = -pair.bias.signum();
-        let forces = [(c.follower, 1.0), (c.leader, -c.ratio)].map(|(axis, factor)| self.room(m, ws, axis, factor * sense));
+        let forces =
+            [(c.follower, 1.0), (c.leader, -c.ratio)].map(|(axis, factor)| self.room(m, ws, axis, factor * sense));
         let force = forces[0].min(forces[1]);
         if force.is_finite() {
             return sense * force;

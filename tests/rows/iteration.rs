@@ -146,8 +146,13 @@ fn contacts_join_the_rows() {
         p.bias[1] = -p.bias[1].abs();
         let spin = Kind::Disc { ratio: 0.05, normal: 1 };
         let roll = Kind::Disc { ratio: 0.02, normal: 1 };
-        let mut rows =
-            p.rows(&[(Kind::EQUALITY, 1), (Kind::Cone { friction: 0.6 }, 3), (spin, 1), (roll, 2), (Kind::EQUALITY, 1)]);
+        let mut rows = p.rows(&[
+            (Kind::EQUALITY, 1),
+            (Kind::Cone { friction: 0.6 }, 3),
+            (spin, 1),
+            (roll, 2),
+            (Kind::EQUALITY, 1),
+        ]);
         let solved = rows.solve(2000);
         assert!(solved.residual <= 1e-6, "{seed}: {solved:?}");
         let x = impulses(&rows);

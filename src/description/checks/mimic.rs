@@ -64,7 +64,8 @@ fn followed<'d>(
 /// Two drives on one degree of freedom.
 fn about_drive(joint: &Joint, place: &Place, report: &mut Report) {
     if joint.drive.is_some() {
-        let message = format!("joint '{}' has a drive of its own, which works beside the one that it follows", joint.name);
+        let message =
+            format!("joint '{}' has a drive of its own, which works beside the one that it follows", joint.name);
         let mend = "take the <drive> out, unless there are two motors";
         report.add(Finding::warning("mimic-drive", place.clone(), message, mend));
     }
