@@ -3,7 +3,7 @@
 use crate::dynamics::{Workspace, aba_hybrid, coordinate_rates, exponential_step, normalize};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef};
+use crate::solver::{AxisCommand, AxisSet, CouplingStage, Outcome, StateRef};
 
 /// How the state is advanced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -290,7 +290,8 @@ impl Rbx {
             }
             self.axes.write_smooth(m, &mut self.ws, self.state.as_ref());
             aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), s.gravity, &mut self.qdd);
-            let coupled = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), (s.h, s.passes), &mut self.qdd);
+            let at = CouplingStage { h: s.h, sweeps: s.passes, first: stage == 0 };
+            let coupled = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), at, &mut self.qdd);
             if !coupled || !self.axes.stage_fits(m, &self.ws, s.h) {
                 return false;
             }

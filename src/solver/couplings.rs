@@ -20,6 +20,8 @@ const HELD: f64 = 1e-10;
 const AGREE: f64 = 1e-9;
 /// Positions over the step that agree: what rounding makes of the speed that reaches a stop, relative.
 const ROUNDING: f64 = 1e-13;
+/// A deviation this small is rounding of the positions, relative: to chase it would keep a resting follower trembling.
+const STILL: f64 = 4.0 * f64::EPSILON;
 
 /// The rows of all couplings. Makes its memory once.
 #[derive(Clone, Debug)]
@@ -38,10 +40,24 @@ struct Pair {
     follower: Seat,
     leader: Seat,
     pushes: [Push; 2],
+    /// What the follower's end of the step (velocity; in explicit stages acceleration) is to fall short of the leader's
+    /// by, so that a deviation goes.
+    back: f64,
     /// Velocity of the follower against its leader's without the row, minus the one wanted.
     bias: f64,
     /// How large that is as rounding.
     slack: f64,
+}
+
+/// How a step asks for the couplings.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage {
+    /// Step, s.
+    pub h: f64,
+    /// W-6.
+    pub sweeps: u32,
+    /// Is this the first stage of the step? There the deviation is read that all stages take back.
+    pub first: bool,
 }
 
 /// The joint of an axis.
@@ -65,7 +81,7 @@ impl Couplings {
     pub fn new(m: &Model) -> Option<Box<Self>> {
         let pair = |c: &Coupling| {
             let (follower, leader) = (Seat::of(m, c.follower)?, Seat::of(m, c.leader)?);
-            Some(Pair { coupling: *c, follower, leader, pushes: Default::default(), bias: 0.0, slack: 0.0 })
+            Some(Pair { coupling: *c, follower, leader, pushes: Default::default(), back: 0.0, bias: 0.0, slack: 0.0 })
         };
         let pairs: Vec<Pair> = m.couplings_in_force().iter().filter_map(pair).collect();
         if pairs.is_empty() {
@@ -118,6 +134,14 @@ impl Couplings {
         solved.converged
     }
 
+    /// Is this follower harder to move than its leader, and than all that follow the same one?
+    fn leads(&self, m: &Model, ws: &Workspace<f64>, c: &Coupling) -> bool {
+        let own = ws.mobility(m, c.follower);
+        let easier = |o: &Coupling| own * o.ratio * o.ratio <= ws.mobility(m, o.follower) * c.ratio * c.ratio;
+        let others = self.pairs.iter().map(|p| &p.coupling).filter(|o| o.leader == c.leader);
+        own < c.ratio * c.ratio * ws.mobility(m, c.leader) && others.into_iter().all(easier)
+    }
+
     fn push(&mut self, k: usize, force: f64) {
         if force != 0.0 {
             for push in &self.pairs[k].pushes {
@@ -125,6 +149,13 @@ impl Couplings {
             }
         }
     }
+}
+
+/// How far the follower is from where its leader puts it; 0 if that is rounding.
+fn deviation(pair: &Pair, follower: &Motion, leader: &Motion) -> f64 {
+    let error = follower.q - pair.coupling.position(leader.q);
+    let size = follower.q.abs() + (pair.coupling.ratio * leader.q).abs() + pair.coupling.offset.abs();
+    if error.abs() <= STILL * size { 0.0 } else { error }
 }
 
 impl Seat {
@@ -153,12 +184,11 @@ impl AxisSet {
         qdd: &mut [f64],
     ) -> usize {
         let Some(mut couplings) = self.couplings.take() else { return 0 };
-        for k in 0..couplings.pairs.len() {
-            let pair = couplings.pairs[k];
-            let (follower, leader, ratio) = self.motions(m, s, &pair, qdd, false);
-            let error = follower.q - pair.coupling.position(leader.q);
-            let bias = follower.v + h * follower.a - ratio * (leader.v + h * leader.a) + ERP * error / h;
-            couplings.pairs[k] = self.prepared(m, pair, bias, (follower, leader, h));
+        for pair in &mut couplings.pairs {
+            let (follower, leader, ratio) = self.motions(m, s, pair, qdd, false);
+            pair.back = ERP * deviation(pair, &follower, &leader) / h;
+            pair.bias = follower.v + h * follower.a - ratio * (leader.v + h * leader.a) + pair.back;
+            self.set_up(m, pair, (follower, leader, h));
         }
         let converged = couplings.solve(m, ws, s.q, (h, sweeps), qdd);
         let mut loose = usize::from(!converged);
@@ -175,35 +205,91 @@ impl AxisSet {
         if forced {
             couplings.response.apply(m, ws, s.q, qdd);
         }
+        self.agree(
+            (m, ws),
+            &couplings,
+            qdd,
+            |set, axis, a| set.speed_at_end(axis, a, h),
+            |set, axis, end| (end - set.speed[axis]) / h,
+        );
         self.couplings = Some(couplings);
         loose
     }
 
     /// As [`AxisSet::couple`] in a stage of an explicit step: brings the accelerations together. False if the step is better
     /// made otherwise.
+    ///
+    /// What takes a deviation back is read at the beginning of the step: the stages in between leave a curved constraint by
+    /// the order of their own, and chasing that would cost the step its order.
     pub fn couple_smooth(
         &mut self,
         m: &Model,
         ws: &mut Workspace<f64>,
         s: StateRef,
-        (h, sweeps): (f64, u32),
+        stage: Stage,
         qdd: &mut [f64],
     ) -> bool {
         let Some(mut couplings) = self.couplings.take() else { return true };
-        for k in 0..couplings.pairs.len() {
-            let pair = couplings.pairs[k];
-            let (follower, leader, ratio) = self.motions(m, s, &pair, qdd, true);
-            let error = follower.q - pair.coupling.position(leader.q);
-            let speed = follower.v - ratio * leader.v;
-            let back = (2.0 * speed + error / (RETURN * h)) / RETURN;
-            let bias = h * (follower.a - ratio * leader.a) + back;
-            couplings.pairs[k] = self.prepared(m, pair, bias, (follower, leader, h));
+        let h = stage.h;
+        for pair in &mut couplings.pairs {
+            let (follower, leader, ratio) = self.motions(m, s, pair, qdd, true);
+            if stage.first {
+                let speed = follower.v - ratio * leader.v;
+                let rate = 1.0 / (RETURN * h);
+                pair.back = rate * (2.0 * speed + rate * deviation(pair, &follower, &leader));
+            }
+            pair.bias = h * (follower.a - ratio * leader.a + pair.back);
+            self.set_up(m, pair, (follower, leader, h));
         }
-        let converged = couplings.solve(m, ws, s.q, (h, sweeps), qdd);
+        let converged = couplings.solve(m, ws, s.q, (h, stage.sweeps), qdd);
         let held = |k: usize| couplings.rows.is_off(k) && couplings.pairs[k].bias.abs() > couplings.pairs[k].slack;
         let loose = (0..couplings.pairs.len()).any(held);
+        self.agree((m, ws), &couplings, qdd, |_, _, a| a, |_, _, end| end);
         self.couplings = Some(couplings);
         converged && !loose
+    }
+
+    /// Takes out the rounding of the rows, so that what stands still with a locked partner stands exactly still: from the
+    /// follower that is hardest to move to a leader that is easier to move, then from the leaders to all others, so that the
+    /// heavy side never takes over the rounding of the light one. `end` makes of an axis' acceleration what the coupling
+    /// is about, `acceleration` goes back.
+    fn agree(
+        &self,
+        (m, ws): (&Model, &Workspace<f64>),
+        couplings: &Couplings,
+        qdd: &mut [f64],
+        end: impl Fn(&Self, usize, f64) -> f64,
+        acceleration: impl Fn(&Self, usize, f64) -> f64,
+    ) {
+        for to_leaders in [true, false] {
+            for (k, pair) in couplings.pairs.iter().enumerate() {
+                let c = pair.coupling;
+                let (AxisSlot::Scalar { v: f, .. }, AxisSlot::Scalar { v: l, .. }) =
+                    (m.axes[c.follower].slot, m.axes[c.leader].slot)
+                else {
+                    continue;
+                };
+                if couplings.rows.is_off(k) || couplings.leads(m, ws, &c) != to_leaders {
+                    continue;
+                }
+                if to_leaders {
+                    let wanted = (end(self, c.follower, qdd[f]) + pair.back) / c.ratio;
+                    qdd[l] = acceleration(self, c.leader, wanted);
+                } else {
+                    let wanted = c.ratio * end(self, c.leader, qdd[l]) - pair.back;
+                    qdd[f] = acceleration(self, c.follower, wanted);
+                }
+            }
+        }
+    }
+
+    /// Speed of an axis at the end of an implicit step.
+    fn speed_at_end(&self, axis: usize, acceleration: f64, h: f64) -> f64 {
+        let place = self.place[axis];
+        if place.is_multiple_of(2) {
+            return self.speed[axis] + h * acceleration;
+        }
+        self.laws[axis].risers[place / 2].speed
     }
 
     /// Motion of follower and leader, and the ratio. The acceleration of an angle of a group is that of its gradient,
@@ -230,16 +316,14 @@ impl AxisSet {
         }
     }
 
-    /// The pair with its forces and bias.
-    fn prepared(&self, m: &Model, pair: Pair, bias: f64, (f, l, h): (Motion, Motion, f64)) -> Pair {
-        let ratio = pair.coupling.ratio;
-        let pushes = [
-            self.push_of(m, pair.coupling.follower, pair.follower, 1.0),
-            self.push_of(m, pair.coupling.leader, pair.leader, -ratio),
-        ];
-        let speeds = f.v.abs() + h * f.a.abs() + (ratio * l.v).abs() + h * (ratio * l.a).abs();
-        let positions = (f.q.abs() + (ratio * l.q).abs() + pair.coupling.offset.abs()) / h;
-        Pair { pushes, bias, slack: AGREE * speeds + ROUNDING * positions, ..pair }
+    /// Sets the forces and the slack of a pair.
+    fn set_up(&self, m: &Model, pair: &mut Pair, (f, l, h): (Motion, Motion, f64)) {
+        let c = pair.coupling;
+        pair.pushes =
+            [self.push_of(m, c.follower, pair.follower, 1.0), self.push_of(m, c.leader, pair.leader, -c.ratio)];
+        let speeds = f.v.abs() + h * f.a.abs() + c.ratio.abs() * (l.v.abs() + h * l.a.abs());
+        let positions = (f.q.abs() + (c.ratio * l.q).abs() + c.offset.abs()) / h;
+        pair.slack = AGREE * speeds + ROUNDING * positions;
     }
 
     fn push_of(&self, m: &Model, axis: usize, seat: Seat, factor: f64) -> Push {

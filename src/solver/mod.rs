@@ -16,5 +16,6 @@ mod smooth;
 pub use axis_set::{AxisSet, Outcome, StateRef};
 pub use command::{AxisCommand, Mode};
 pub use cone::{ConeBlock, Plane, disc};
+pub use couplings::Stage as CouplingStage;
 pub use law::{AxisInput, Law, SERVO_TIME, STOP_ERP, law};
 pub use rows::{FINISH_ROWS, Kind, Row, Rows, Solved};
