@@ -14,6 +14,11 @@ use crate::model::{AxisSlot, Coupling, Model};
 const ERP: f64 = 0.2;
 /// The same in the stages of an explicit step: time constant of a critically damped return, in steps.
 const RETURN: f64 = 10.0;
+/// Share of the velocities at the start to which the rows are solved if that is possible: rounding, so that an explicit step
+/// keeps its order and its energy.
+const AIM: f64 = 1e-14;
+/// Share of the velocities at the start that may be left.
+const TOLERANCE: f64 = 1e-11;
 /// A row that moves this much less than it would without the locks of a spherical joint is held by them.
 const HELD: f64 = 1e-10;
 /// Velocities of two locked axes that agree, relative.
@@ -126,12 +131,12 @@ impl Couplings {
                 self.rows.switch_off(k);
             }
         }
-        let solved = self.rows.solve(sweeps);
+        let solved = self.rows.solve(sweeps, AIM);
         for k in 0..self.pairs.len() {
             self.push(k, self.rows.row_impulse(k) / h);
         }
         self.response.apply(m, ws, q, qdd);
-        solved.converged
+        solved.within(TOLERANCE)
     }
 
     /// Is this follower harder to move than its leader, and than all that follow the same one?

@@ -5,9 +5,6 @@ use super::cone::{ConeBlock, Plane, disc};
 
 /// Numbers in a chunk of w.
 pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
-/// The residual that counts as converged, relative to the velocities that the rows start with. Rounding of the sums is
-/// about 1e-15 of the largest term.
-const TOLERANCE: f64 = 1e-11;
 /// More rows than this are left to the iteration: the direct finish costs their cube.
 pub const FINISH_ROWS: usize = 60;
 
@@ -84,8 +81,15 @@ pub struct Solved {
     pub sweeps: u32,
     /// Tries of the direct finish.
     pub tries: u32,
-    /// The residual is rounding.
-    pub converged: bool,
+    /// The largest velocity that the rows started with, rad/s or m/s: what a tolerance is relative to.
+    pub scale: f64,
+}
+
+impl Solved {
+    /// Is the residual at most this share of the velocities that the rows started with?
+    pub fn within(&self, tolerance: f64) -> bool {
+        self.residual <= tolerance * self.scale
+    }
 }
 
 /// The rows of a problem. Adding blocks may allocate; solving does not.
@@ -200,11 +204,12 @@ impl Rows {
     }
 
     /// Finds the impulses, from those of the last solve: at most `sweeps` Gauss–Seidel sweeps, then the direct finish if
-    /// it is needed and there are not too many rows.
-    pub fn solve(&mut self, sweeps: u32) -> Solved {
+    /// it is needed and there are not too many rows. Ends early where the residual is `aim` times the velocities at the
+    /// start; about 1e-15 of them is rounding.
+    pub fn solve(&mut self, sweeps: u32, aim: f64) -> Solved {
         self.gather();
-        let wanted = TOLERANCE * self.scale();
-        let mut solved = Solved::default();
+        let mut solved = Solved { scale: self.scale(), ..Solved::default() };
+        let wanted = aim * solved.scale;
         while solved.sweeps < sweeps.max(1) {
             solved.sweeps += 1;
             if self.sweep() <= wanted {
@@ -215,7 +220,6 @@ impl Rows {
         if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
             (solved.residual, solved.tries) = self.finish(solved.residual, wanted);
         }
-        solved.converged = solved.residual <= wanted;
         solved
     }
 
