@@ -6,6 +6,8 @@
 
 /// Steps of the safeguarded Newton iteration: bisection alone would need about 100 from the widest bracket.
 const STEPS: u32 = 100;
+/// The ratio of length and radius that counts as 1.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A symmetric 2×2 matrix, diagonalised: eigenvalues, and the angle of their axes as cosine and sine.
 #[derive(Clone, Copy, Debug, Default)]
@@ -152,7 +154,7 @@ fn root(h: &Plane, (r, lever): ([f64; 2], [f64; 2]), base: f64) -> f64 {
         } else {
             2.0 * s + h.values[0] + h.values[1]
         };
-        if (next - s).abs() <= f64::EPSILON * s || ratio == 1.0 {
+        if (ratio - 1.0).abs() <= ROUNDING || (next - s).abs() <= f64::EPSILON * s {
             return s;
         }
         s = next;
@@ -161,5 +163,5 @@ fn root(h: &Plane, (r, lever): ([f64; 2], [f64; 2]), base: f64) -> f64 {
 }
 
 fn length(x: [f64; 2]) -> f64 {
-    libm::hypot(x[0], x[1])
+    (x[0] * x[0] + x[1] * x[1]).sqrt()
 }

@@ -217,7 +217,9 @@ impl Rows {
             }
         }
         solved.residual = self.residual();
-        if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
+        let bounded = |b: &Block| matches!(b.kind, Kind::Bounds { .. });
+        let direct = self.rows.len() <= FINISH_ROWS && self.blocks.iter().any(bounded);
+        if solved.residual > wanted && direct {
             (solved.residual, solved.tries) = self.finish(solved.residual, wanted);
         }
         solved

@@ -91,8 +91,10 @@ fn about_range(joint: &Joint, mimic: &Mimic, leader: &Joint, place: Place, repor
         let mend = "mend the range, the multiplier or the offset";
         report.add(Finding::error("mimic-range", place, message, mend));
     } else {
-        let message = format!("{is} {}: it stops '{}' within {}", shown(needed), leader.name, shown(met));
-        let mend = "widen its <limit>, if that is not meant";
+        let ends = [met.0, met.1].map(|end| (end - mimic.offset) / mimic.multiplier);
+        let left = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        let message = format!("{is} {}: it leaves '{}' only {}", shown(needed), leader.name, shown(left));
+        let mend = "widen its <limit>, or mend the sign of the multiplier, if that is not meant";
         report.add(Finding::warning("mimic-range", place, message, mend));
     }
 }
@@ -104,6 +106,7 @@ fn range(joint: &Joint) -> (f64, f64) {
 }
 
 fn shown((low, high): (f64, f64)) -> String {
-    let number = |x: f64| if x.abs() < 1e3 * PI { format!("{}", (x * 1e6).round() / 1e6) } else { format!("{x:e}") };
+    let number =
+        |x: f64| if x.abs() < 1e3 * PI { format!("{}", (x * 1e6).round() / 1e6 + 0.0) } else { format!("{x:e}") };
     format!("{} to {}", number(low), number(high))
 }
