@@ -245,6 +245,53 @@ fn random_couplings_stay_finite() {
     }
 }
 
+/// Everything at once, on hinges, slides and cardans: stops and servos on all axes, bounded and not, friction, steps of 5 ms.
+/// Nearly every step settles, and the couplings hold to rounding.
+#[test]
+fn drives_stops_and_couplings_settle() {
+    let (mut steps, mut unsettled) = (0, 0);
+    for seed in 0..60u64 {
+        let mut rng = Random(seed + 900);
+        let joints: Vec<JointType> = (0..9).map(|i| ALL[(i + seed as usize) % 3]).collect();
+        let mut m = tree(&joints, seed % 2 == 0, seed);
+        let n = m.axes.len();
+        for a in &mut m.axes {
+            (a.lower, a.upper) = (-1.5 + 0.3 * rng.unit(), 1.5 + 0.3 * rng.unit());
+            (a.friction, a.damping) = (rng.unit().max(0.0), 0.5 + 0.3 * rng.unit());
+            a.drive.max_torque = if rng.unit() > 0.3 { f64::INFINITY } else { 20.0 };
+            a.drive.max_speed = 3.0;
+        }
+        m.couplings = (0..n - n % 2)
+            .filter(|a| a % 2 == 1)
+            .map(|follower| Coupling {
+                follower,
+                leader: follower - 1,
+                ratio: 2.0 * rng.unit(),
+                offset: 0.2 * rng.unit(),
+            })
+            .collect();
+        m.effects = Effects::called_for(&m);
+        let m = Arc::new(m);
+        let mut w = World::new(m.clone(), settings(Integrator::SemiImplicitEuler, 0.005, GRAVITY)).unwrap();
+        for step in 0..2000 {
+            if step % 200 == 0 {
+                let command = |i: usize, rng: &mut Random| match (i % 2, rng.next() % 3) {
+                    (1, 0 | 1) | (_, 0) => AxisCommand::torque(10.0 * rng.unit()),
+                    _ => AxisCommand::servo(2.0 * rng.unit()),
+                };
+                let commands: Vec<AxisCommand> = (0..n).map(|i| command(i, &mut rng)).collect();
+                w.set_commands(&commands).unwrap();
+            }
+            w.advance();
+        }
+        (steps, unsettled) = (steps + w.stats().steps, unsettled + w.stats().unsettled_steps);
+        assert_eq!(w.stats().diverged_steps, 0, "seed {seed}");
+        assert!(deviation(&w) <= 1e-12, "seed {seed}: {}", deviation(&w));
+    }
+    println!("{unsettled} of {steps}");
+    assert!(unsettled * 1000 <= steps, "{unsettled} of {steps}");
+}
+
 /// What is coupled inside a free body does not change its momentum.
 #[test]
 fn couplings_are_inner_forces() {

@@ -30,7 +30,8 @@ fn chains_are_resolved() {
 /// What makes no sense is refused, with its line; what is odd is told, and simulated as it can be.
 #[test]
 fn findings_name_the_line() {
-    let cases: [([&str; 3], &[(&str, u32)]); 6] = [
+    type Expected = &'static [(&'static str, u32)];
+    let cases: [([&str; 3], Expected); 6] = [
         (["<mimic joint='a'/>", "", ""], &[("mimic-cycle", 4)]),
         (
             ["<mimic joint='b'/>", "<mimic joint='c'/>", "<mimic joint='a'/>"],

@@ -20,7 +20,7 @@ struct Case {
 }
 
 fn cases() -> Vec<Case> {
-    let mixed = |s: u64| tree(&(0..12).map(|i| ALL[(i + s as usize) % 5]).collect::<Vec<_>>(), s % 3 == 0, s);
+    let mixed = |s: u64| tree(&(0..12).map(|i| ALL[(i + s as usize) % 5]).collect::<Vec<_>>(), s.is_multiple_of(3), s);
     let mut models: Vec<Model> = (0..20).map(mixed).collect();
     models.extend(ALL.map(|j| tree(&[j; 6], true, 77)));
     models.into_iter().enumerate().map(|(n, m)| case(m, n as u64)).collect()
@@ -127,7 +127,7 @@ impl Case {
     fn push(&self, rng: &mut Random) -> Push {
         let body = 1 + rng.next() as usize % (self.m.bodies.len() - 1);
         let mut push = Push { body, ..Push::default() };
-        if rng.next() % 2 == 0 {
+        if rng.next().is_multiple_of(2) {
             (push.torque, push.force) = (V3::from(rng.vec3(1.0)), V3::from(rng.vec3(1.0)));
         }
         let nv = self.m.bodies[body].joint.nv();
