@@ -268,6 +268,8 @@ pub struct Drive {
     pub dynamic_resistance: Option<f64>,
     /// (g).
     pub short_brake: bool,
+    /// Bandwidth of the servo's position loop, Hz.
+    pub bandwidth: Option<f64>,
     /// kg·m² on the motor side.
     pub rotor_inertia: Option<f64>,
     /// motor turns per axis turn.

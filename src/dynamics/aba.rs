@@ -11,7 +11,7 @@ use super::crba::Composite;
 use super::eliminate::{eliminate_axis, eliminate_linear_z, revolute, revolute_root};
 use super::joint::{bias, joint_transform, joint_velocity, turned_z, universal_axis};
 use crate::math::{Fma, M3, Real, V3};
-use crate::model::{AxisSlot, Body, JointType, Model};
+use crate::model::{Body, JointType, Model};
 
 /// Frame and motion of a body; its velocity gives way to its acceleration in the last pass.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,14 +67,15 @@ impl<T: Real> Workspace<T> {
         }
     }
 
-    /// Acceleration per torque of an axis in the last solve, with what hangs on it free and its base held: 1/D of the
-    /// articulated inertia. With a free base it accelerates more.
-    pub fn mobility(&self, m: &Model, axis: usize) -> T {
-        match m.axes[axis].slot {
-            AxisSlot::Scalar { v, .. } => self.dof[v].d,
-            AxisSlot::Euler { group, angle } => self.balls[m.bodies[m.eulers[group].body].ball].mobility(angle),
-            AxisSlot::Apart { .. } => T::of(0.0),
-        }
+    /// Acceleration per torque of a velocity coordinate in the last solve, with what hangs on it free and its base held:
+    /// 1/D of the articulated inertia; 0 if it was locked. With a free base it accelerates more.
+    pub fn mobility(&self, v: usize) -> T {
+        self.dof[v].d
+    }
+
+    /// The same along a gradient (child frame) of a spherical joint, as if none of its angles were locked.
+    pub fn ball_mobility(&self, ball: usize, gradient: V3<T>) -> T {
+        self.balls[ball].mobility(gradient)
     }
 
     /// Acceleration of the world minus gravity.

@@ -51,13 +51,9 @@ impl<T: Real> Ball<T> {
         self.x - self.p.mv(self.reach(a))
     }
 
-    /// Diagonal of `D⁻¹`.
-    pub fn mobility(&self, direction: usize) -> T {
-        match direction {
-            0 => self.inverse.xx,
-            1 => self.inverse.yy,
-            _ => self.inverse.zz,
-        }
+    /// `gᵀ D⁻¹ g`.
+    pub fn mobility(&self, gradient: V3<T>) -> T {
+        gradient.dot(self.inverse.mv(gradient))
     }
 
     /// Takes the acceleration of the frame it moves against into account.

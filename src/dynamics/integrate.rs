@@ -52,6 +52,27 @@ pub fn exponential_step(m: &Model, q: &mut [f64], v: &mut [f64], vdot: &[f64], h
     }
 }
 
+/// Moves the coordinates from `from` to `to` (nq) at constant speeds `u` (nv) for `h` seconds: rotations turn by the
+/// exponential of h ω; a floating body's origin moves along the axes of the body in the middle of its turn, so that moving
+/// back with −u leads back to `from`.
+pub fn move_coordinates(m: &Model, from: &[f64], u: &[f64], h: f64, to: &mut [f64]) {
+    to.copy_from_slice(from);
+    for b in &m.bodies[1..] {
+        let (q, u) = (&mut to[b.q..b.q + b.joint.nq()], &u[b.v..b.v + b.joint.nv()]);
+        match b.joint {
+            JointType::Spherical => turn(q, V3::new(u[0], u[1], u[2]) * h),
+            JointType::Floating => {
+                let half = V3::new(u[0], u[1], u[2]) * (0.5 * h);
+                turn(&mut q[3..7], half);
+                let way = rotation([q[3], q[4], q[5], q[6]]).mv(V3::new(u[3], u[4], u[5]) * h);
+                turn(&mut q[3..7], half);
+                (q[0], q[1], q[2]) = (q[0] + way.x, q[1] + way.y, q[2] + way.z);
+            }
+            _ => q.iter_mut().zip(u).for_each(|(x, u)| *x += h * u),
+        }
+    }
+}
+
 fn floating_step(q: &mut [f64], v: &mut [f64], vdot: &[f64], h: f64) {
     let (w, l) = (V3::new(v[0], v[1], v[2]), V3::new(v[3], v[4], v[5]));
     let (wd, ld) = (V3::new(vdot[0], vdot[1], vdot[2]), V3::new(vdot[3], vdot[4], vdot[5]));
@@ -64,8 +85,8 @@ fn floating_step(q: &mut [f64], v: &mut [f64], vdot: &[f64], h: f64) {
     v.copy_from_slice(&[w.x, w.y, w.z, l.x, l.y, l.z]);
 }
 
-/// `q ← q ⊗ exp(a/2)`, then unit length again.
-fn turn(q: &mut [f64], a: V3<f64>) {
+/// Turns a unit quaternion `q` (w, x, y, z) by the rotation vector `a` (rad, child frame).
+pub fn turn(q: &mut [f64], a: V3<f64>) {
     let angle = a.dot(a).sqrt();
     let (s, c) = sin_cos(0.5 * angle);
     let k = if angle > 1e-8 { s / angle } else { 0.5 - angle * angle / 48.0 };

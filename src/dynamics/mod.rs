@@ -24,7 +24,7 @@ pub use ball::{BallIn, BallLock};
 pub use check::singular_axes;
 pub use crba::crba;
 pub use energy::{Energy, Momentum, energy, momentum};
-pub use integrate::{coordinate_rates, exponential_step, normalize};
+pub use integrate::{coordinate_rates, exponential_step, move_coordinates, normalize, turn};
 pub use joint::joint_transform;
 pub use kinematics::{Kinematics, kinematics, link_pose, link_twist};
 pub use layout::{CHUNK, Layout};

@@ -1,15 +1,21 @@
 //! rbx: reduced coordinates, one step at a time.
 
-use crate::dynamics::{Workspace, aba_hybrid, coordinate_rates, exponential_step, normalize};
+use super::midpoint::Midpoint;
+use super::rk4::Stages;
+use crate::dynamics::{Workspace, exponential_step, normalize};
 use crate::math::{V3, Vec3};
-use crate::model::{AxisSlot, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, CouplingStage, Outcome, StateRef};
+use crate::model::{AxisSlot, Effects, JointType, Model, rotation};
+use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef, StepStart};
 
 /// How the state is advanced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// First order; damping, servos, stops and friction implicit. The default.
+    /// Second order, the same forwards and backwards in time, so that the energy of free motion does not drift; damping,
+    /// servos, stops and friction implicit. It iterates; a step whose iteration does not contract is halved, and counted.
+    /// The default.
     #[default]
+    ImplicitMidpoint,
+    /// First order; damping, servos, stops and friction implicit, the velocity products explicit.
     SemiImplicitEuler,
     /// Classical fourth order; axes that stand still stand. Steps in which an axis begins or ceases to stand (in its dry
     /// friction, at a stop, at a servo's target), a servo is on its way, or a viscous term is stiffer than the step, are
@@ -19,7 +25,11 @@ pub enum Integrator {
 
 impl Integrator {
     /// Names for `--integrator` and the parameter `integrator`.
-    pub const NAMES: [(&'static str, Self); 2] = [("semi_implicit_euler", Self::SemiImplicitEuler), ("rk4", Self::Rk4)];
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("implicit_midpoint", Self::ImplicitMidpoint),
+        ("semi_implicit_euler", Self::SemiImplicitEuler),
+        ("rk4", Self::Rk4),
+    ];
 
     /// By name.
     pub fn by_name(name: &str) -> Option<Self> {
@@ -142,7 +152,7 @@ impl State {
         }
     }
 
-    fn read_angles(&mut self, m: &Model) {
+    pub(super) fn read_angles(&mut self, m: &Model) {
         for (g, angles) in m.eulers.iter().zip(&mut self.angles) {
             let r = rotation([self.q[g.q], self.q[g.q + 1], self.q[g.q + 2], self.q[g.q + 3]]);
             *angles = g.angles(&r, *angles);
@@ -156,7 +166,7 @@ impl State {
         self.angles.copy_from_slice(&other.angles);
     }
 
-    fn as_ref(&self) -> StateRef<'_> {
+    pub(super) fn as_ref(&self) -> StateRef<'_> {
         StateRef { q: &self.q, v: &self.v, angles: &self.angles }
     }
 
@@ -172,7 +182,9 @@ pub struct StepSettings {
     pub h: f64,
     /// m/s², world.
     pub gravity: [f64; 3],
-    /// Passes of the axis set, at most.
+    /// What is simulated.
+    pub effects: Effects,
+    /// Passes of the dynamics and the axis set, at most.
     pub passes: u32,
     /// Integrator.
     pub integrator: Integrator,
@@ -181,22 +193,20 @@ pub struct StepSettings {
 /// What became of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepReport {
-    /// RK4 handed the step to semi-implicit Euler.
+    /// RK4 handed the step to the implicit midpoint rule.
     pub fell_back: bool,
     /// The axis set did not settle within its passes.
     pub unsettled: bool,
+    /// How many times a step was halved, because the iteration of the midpoint rule did not contract.
+    pub halvings: u32,
+    /// Pieces of the step that were slowed down to the energy that was paid for.
+    pub guarded: u32,
+    /// What they lost, J.
+    pub guarded_energy: f64,
     /// A 3DOF group was at its pole.
     pub at_pole: bool,
     /// The new state would not have been finite: it was not taken.
     pub diverged: bool,
-}
-
-/// Buffers of the stages of RK4; made only when RK4 is chosen.
-#[derive(Clone, Debug, Default)]
-struct Stages {
-    rates: Vec<f64>,
-    sum_q: Vec<f64>,
-    sum_v: Vec<f64>,
 }
 
 /// One robot in the rbx engine: a clone goes on with the same bits.
@@ -206,9 +216,10 @@ pub struct Rbx {
     pub state: State,
     /// Axis laws and efforts.
     pub axes: AxisSet,
-    ws: Workspace<f64>,
-    qdd: Vec<f64>,
-    before: State,
+    pub(super) ws: Workspace<f64>,
+    pub(super) qdd: Vec<f64>,
+    pub(super) before: State,
+    midpoint: Option<Midpoint>,
     stages: Option<Stages>,
 }
 
@@ -221,6 +232,7 @@ impl Rbx {
             ws: Workspace::new(m),
             qdd: vec![0.0; m.nv],
             before: state.clone(),
+            midpoint: None,
             stages: None,
             state,
         }
@@ -228,22 +240,36 @@ impl Rbx {
 
     /// Makes the memory that an integrator needs, so that steps make none.
     pub fn prepare(&mut self, m: &Model, integrator: Integrator) {
-        self.stages = (integrator == Integrator::Rk4).then(|| Stages {
-            rates: vec![0.0; m.nq],
-            sum_q: vec![0.0; m.nq],
-            sum_v: vec![0.0; m.nv],
-        });
+        self.midpoint = (integrator != Integrator::SemiImplicitEuler).then(|| Midpoint::new(m));
+        self.stages = (integrator == Integrator::Rk4).then(|| Stages::new(m));
+    }
+
+    /// Takes over a state; the steps before it are forgotten.
+    pub fn restart(&mut self, state: &State) {
+        self.state.copy_from(state);
+        self.axes.reset();
+        if let Some(midpoint) = &mut self.midpoint {
+            midpoint.forget();
+        }
     }
 
     /// One step: the laws of the axes, then the integrator; a state that is not finite is not taken.
     pub fn step(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings) -> StepReport {
         let mut report = StepReport::default();
         self.before.copy_from(&self.state);
-        report.at_pole = self.axes.prepare(m, self.state.as_ref(), commands, m.effects, s.h);
         let explicit = s.integrator == Integrator::Rk4;
-        if !(explicit && self.rk4(m, s)) {
+        if !(explicit && self.rk4(m, commands, s, &mut report)) {
             report.fell_back = explicit;
-            report.unsettled = !self.euler(m, s).settled;
+            match self.midpoint.take() {
+                Some(mut midpoint) => {
+                    self.midpoint_step(m, &mut midpoint, commands, s, &mut report);
+                    self.midpoint = Some(midpoint);
+                }
+                None => report.unsettled = !self.euler(m, commands, s, &mut report).settled,
+            }
+        }
+        if self.axes.push_back(m, &mut self.state.q, &self.state.angles) {
+            self.state.read_angles(m);
         }
         if !self.state.finite() {
             self.state.copy_from(&self.before);
@@ -252,16 +278,32 @@ impl Rbx {
         report
     }
 
-    fn euler(&mut self, m: &Model, s: &StepSettings) -> Outcome {
-        let outcome = self.axes.solve(m, &mut self.ws, self.state.as_ref(), (s.gravity, s.h, s.passes), &mut self.qdd);
+    fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> Outcome {
+        let at = self.state.as_ref();
+        let start = StepStart { state: at, commands, h: s.h, mean: false };
+        report.at_pole |= self.axes.prepare(m, &start, s.effects);
+        let mut passes = 0;
+        let settled = loop {
+            passes += 1;
+            let wanted = passes < s.passes;
+            let out = (&mut self.qdd[..], wanted);
+            let misfits = self.axes.pass(m, &mut self.ws, (at, at.v), (s.gravity, s.h), out);
+            if misfits == 0 || !wanted {
+                break misfits == 0;
+            }
+        };
+        self.axes.finish(m, &self.ws, s.h, &self.qdd);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
+        self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);
-        outcome
+        Outcome { passes, settled }
     }
 
     /// False, with the state as before, if the step is not smooth.
-    fn rk4(&mut self, m: &Model, s: &StepSettings) -> bool {
-        if !self.axes.is_smooth() {
+    fn rk4(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> bool {
+        let start = StepStart { state: self.state.as_ref(), commands, h: s.h, mean: true };
+        report.at_pole |= self.axes.prepare(m, &start, s.effects);
+        if !self.axes.is_smooth(m) {
             return false;
         }
         let Some(mut st) = self.stages.take() else { return false };
@@ -269,59 +311,12 @@ impl Rbx {
         self.stages = Some(st);
         if !smooth {
             self.state.copy_from(&self.before);
-            self.axes.update_rates(m, self.state.as_ref());
         }
         smooth
     }
-
-    /// Quaternions are integrated as four numbers and made unit again at the end, which keeps the order.
-    fn rk4_stages(&mut self, m: &Model, s: &StepSettings, st: &mut Stages) -> bool {
-        st.sum_q.fill(0.0);
-        st.sum_v.fill(0.0);
-        for (stage, (ahead, weight)) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)].into_iter().enumerate() {
-            if stage > 0 {
-                for (x, (x0, r)) in self.state.q.iter_mut().zip(self.before.q.iter().zip(&st.rates)) {
-                    *x = x0 + ahead * s.h * r;
-                }
-                for (x, (x0, a)) in self.state.v.iter_mut().zip(self.before.v.iter().zip(&self.qdd)) {
-                    *x = x0 + ahead * s.h * a;
-                }
-                self.state.read_angles(m);
-            }
-            self.axes.write_smooth(m, &mut self.ws, self.state.as_ref());
-            aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), s.gravity, &mut self.qdd);
-            let at = CouplingStage { h: s.h, sweeps: s.passes, first: stage == 0 };
-            let coupled = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), at, &mut self.qdd);
-            if !coupled || !self.axes.stage_fits(m, &self.ws, s.h) {
-                return false;
-            }
-            coordinate_rates(m, &self.state.q, &self.state.v, &mut st.rates);
-            accumulate(&mut st.sum_q, &st.rates, weight);
-            accumulate(&mut st.sum_v, &self.qdd, weight);
-        }
-        for (x, (x0, sum)) in self.state.q.iter_mut().zip(self.before.q.iter().zip(&st.sum_q)) {
-            *x = x0 + s.h / 6.0 * sum;
-        }
-        for (x, (x0, sum)) in self.state.v.iter_mut().zip(self.before.v.iter().zip(&st.sum_v)) {
-            *x = x0 + s.h / 6.0 * sum;
-        }
-        normalize_all(m, &mut self.state.q);
-        self.state.read_angles(m);
-        if !self.axes.stayed_smooth(m, self.state.as_ref()) {
-            return false;
-        }
-        self.axes.finish_smooth(m, &self.ws, self.state.as_ref());
-        true
-    }
 }
 
-fn accumulate(sum: &mut [f64], x: &[f64], weight: f64) {
-    for (s, x) in sum.iter_mut().zip(x) {
-        *s += weight * x;
-    }
-}
-
-fn normalize_all(m: &Model, q: &mut [f64]) {
+pub(super) fn normalize_all(m: &Model, q: &mut [f64]) {
     for b in &m.bodies[1..] {
         match b.joint {
             JointType::Spherical => normalize(&mut q[b.q..b.q + 4]),

@@ -13,7 +13,7 @@ mod membership;
 
 pub use build::Base;
 pub use constraint::{Breakable, Coupling, SoftDof, Softness};
-pub use drive::DriveLimits;
+pub use drive::{DriveLimits, SERVO_TIME};
 pub use effects::{EFFECT_NAMES, Effects};
 pub use group::{EulerFrame, EulerRates, POLE, rotation};
 pub use membership::Membership;

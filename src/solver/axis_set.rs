@@ -1,19 +1,20 @@
-//! All axes at once: which of them stand on a riser of their law, which slide on a flat.
+//! All axes at once: which of them stand on a riser of their law, which slide on a segment.
 //!
 //! A standing axis is locked to the speed of its riser by the hybrid dynamics, exactly; a sliding one gets the torque of
-//! its flat. After each pass the axes whose reaction or speed does not fit move to the neighbouring part of their law. All
+//! its segment. After each pass the axes whose reaction or speed does not fit move to the neighbouring part of their law. All
 //! that do not fit move at once while that helps; else only the last of them (block principal pivoting with Murty's rule
 //! as the fallback; Júdice and Pires 1994), which ends because the mass matrix is positive definite.
+//!
+//! A sliding axis moves with the mean of its speeds at the start and the end of the step, of second order. One that stands,
+//! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
 use super::couplings::Couplings;
-use super::law::{Law, law};
-use super::{AxisCommand, AxisInput};
-use crate::dynamics::{DofIn, Workspace, aba_hybrid};
+use super::law::{FRICTION, Law, law};
+use super::{AxisCommand, AxisInput, Brakes};
+use crate::dynamics::{Workspace, aba_hybrid};
 use crate::math::V3;
-use crate::model::{Axis, AxisSlot, Effects, EulerRates, Model};
+use crate::model::{Axis, AxisSlot, DriveLimits, Effects, EulerRates, Model};
 
-/// Relative tolerance of the fit.
-const FIT: f64 = 1e-11;
 /// Passes that may move all axes at once without getting better.
 const PATIENCE: u32 = 3;
 
@@ -37,21 +38,61 @@ pub struct StateRef<'a> {
     pub angles: &'a [[f64; 3]],
 }
 
+/// What a step starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct StepStart<'a> {
+    /// State at the start.
+    pub state: StateRef<'a>,
+    /// Commands of all axes.
+    pub commands: &'a [AxisCommand],
+    /// Step, s.
+    pub h: f64,
+    /// Sliding axes move with their mean speed; else all move with the speed at the end.
+    pub mean: bool,
+}
+
+/// Work at the axes since the start, J: summed over the steps as h·torque·mean speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Done by the drives.
+    pub drives: f64,
+    /// Taken by damping, friction, stops, soft joints (which may give some of it back).
+    pub losses: f64,
+}
+
 /// Laws and places of all axes. Makes its memory once.
 #[derive(Clone, Debug)]
 pub struct AxisSet {
+    /// The drives as they are now.
+    pub drives: Vec<DriveLimits>,
     pub(super) laws: Vec<Law>,
-    /// Per axis: 2 j on flat j, 2 k + 1 on riser k.
+    /// Per axis: 2 j on segment j, 2 k + 1 on riser k.
     pub(super) place: Vec<usize>,
+    /// Per axis: it moves with its speed at the end of the step.
+    pub(super) at_end: Vec<bool>,
+    /// Per axis: its slope was stiff against the last step.
+    stiff: Vec<bool>,
     /// Kinds of the riser an axis stood on at the end of the last step; 0 = it slid.
     pub(super) memory: Vec<u8>,
     moves: Vec<isize>,
     /// Per axis of a 3DOF group: which of its group's locks is its own, while it is locked.
-    lock: Vec<usize>,
+    pub(super) lock: Vec<usize>,
     pub(super) rates: Vec<EulerRates>,
+    /// Speed at the start of the step.
     pub(super) speed: Vec<f64>,
+    pub(super) brakes: Vec<Brakes>,
+    /// Per axis: inertia of the rotor, 0 while that effect is off.
+    pub(super) rotor: Vec<f64>,
+    /// Per velocity coordinate: share of the new velocity in the speed with which it moves, ½ or 1.
+    pub weight: Vec<f64>,
     /// Per axis: drive torque really applied.
     pub effort: Vec<f64>,
+    /// Work since the start.
+    pub work: Work,
+    paid: (f64, f64),
+    pub(super) mean: bool,
+    best: usize,
+    patience: u32,
     /// Rows that hold followers to their leaders, if there are any.
     pub(super) couplings: Option<Box<Couplings>>,
 }
@@ -61,240 +102,213 @@ impl AxisSet {
     pub fn new(model: &Model) -> Self {
         let n = model.axes.len();
         Self {
+            drives: model.axes.iter().map(|a| a.drive).collect(),
             laws: vec![Law::default(); n],
             place: vec![0; n],
+            at_end: vec![true; n],
+            stiff: vec![false; n],
             memory: vec![0; n],
             moves: vec![0; n],
             lock: vec![0; n],
             rates: vec![EulerRates::default(); model.eulers.len()],
             speed: vec![0.0; n],
+            brakes: vec![Brakes::default(); n],
+            rotor: vec![0.0; n],
+            weight: vec![1.0; model.nv],
             effort: vec![0.0; n],
             couplings: Couplings::new(model),
+            work: Work::default(),
+            paid: (0.0, 0.0),
+            mean: false,
+            best: usize::MAX,
+            patience: PATIENCE,
         }
     }
 
-    /// Forgets the last step.
+    /// Forgets the steps so far.
     pub fn reset(&mut self) {
         self.memory.fill(0);
         self.effort.fill(0.0);
+        self.stiff.fill(false);
+        self.brakes.fill(Brakes::default());
+        self.work = Work::default();
         if let Some(couplings) = &mut self.couplings {
             couplings.reset();
         }
     }
 
-    /// Sets up the laws of a step of `h` seconds and the first guess of each axis' place. True if a 3DOF group is at its
-    /// pole.
-    pub fn prepare(&mut self, m: &Model, s: StateRef, commands: &[AxisCommand], effects: Effects, h: f64) -> bool {
-        let at_pole = self.update_rates(m, s);
+    /// Sets up the laws of a step and the first guess of each axis' place. True if a 3DOF group is at its pole.
+    pub fn prepare(&mut self, m: &Model, start: &StepStart, effects: Effects) -> bool {
+        let at_pole = self.update_rates(m, start.state.angles);
+        (self.best, self.patience) = (usize::MAX, PATIENCE);
         for (i, axis) in m.axes.iter().enumerate() {
-            let (q, v) = self.axis_state(m, axis, s);
-            let input = AxisInput { axis, command: commands[i], q, v };
+            let (q, v) = self.axis_state(m, axis, start.state);
             self.speed[i] = v;
-            self.laws[i] = if self.ungraspable(axis) { Law::default() } else { law(&input, effects, h) };
+            self.rotor[i] = if effects.rotor_inertia { self.drives[i].rotor_inertia } else { 0.0 };
+            let input = AxisInput {
+                axis,
+                limits: &self.drives[i],
+                command: start.commands[i],
+                q,
+                stuck: self.memory[i] & FRICTION != 0 || v == 0.0,
+                brakes: self.brakes[i],
+            };
+            self.laws[i] = if self.ungraspable(axis) { Law::default() } else { law(&input, effects, start.h) };
             self.place[i] = self.laws[i].guess(v, self.memory[i]);
+            self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }
+        self.mean = start.mean;
+        self.start_couplings(m, start);
+        self.set_weights(m);
         at_pole
     }
 
     /// At the pole of a group, H has no torque of its own: it turns about the same line as B.
     fn ungraspable(&self, axis: &Axis) -> bool {
-        matches!(axis.slot, AxisSlot::Euler { group, angle: 0 } if self.rates[group].at_pole)
+        match axis.slot {
+            AxisSlot::Euler { group, angle: 0 } => self.rates[group].at_pole,
+            AxisSlot::Apart { .. } => true,
+            _ => false,
+        }
     }
 
     pub(super) fn axis_state(&self, m: &Model, axis: &Axis, s: StateRef) -> (f64, f64) {
         match axis.slot {
             AxisSlot::Scalar { q, v } => (s.q[q], s.v[v]),
-            AxisSlot::Euler { group, angle } => {
-                let at = m.eulers[group].v;
-                let w = V3::new(s.v[at], s.v[at + 1], s.v[at + 2]);
-                (s.angles[group][angle], self.rates[group].gradient[angle].dot(w))
-            }
+            AxisSlot::Euler { group, angle } => (s.angles[group][angle], self.axis_rate(m, axis, s.v)),
             AxisSlot::Apart { position } => (position, 0.0),
         }
     }
 
-    /// Accelerations of an implicit step of `h` seconds after [`AxisSet::prepare`], in at most `passes` passes.
-    pub fn solve(
+    /// One pass of an implicit step after [`AxisSet::prepare`]: accelerations from `v0`, the velocities at the start, with
+    /// everything else at the state `at`. Returns how many axes do not fit their laws; they have been moved then, if another
+    /// pass is `wanted`.
+    pub fn pass(
         &mut self,
         m: &Model,
         ws: &mut Workspace<f64>,
-        s: StateRef,
-        (gravity, h, passes): ([f64; 3], f64, u32),
-        qdd: &mut [f64],
-    ) -> Outcome {
-        let (mut best, mut patience, mut done) = (usize::MAX, PATIENCE, 0);
-        loop {
-            self.write_inputs(m, ws, h);
-            aba_hybrid(m, ws, (s.q, s.v), gravity, qdd);
-            done += 1;
-            let loose = self.couple(m, ws, s, (h, passes), qdd);
-            let misfits = self.misfits(m, ws, (h, qdd)) + loose;
-            if misfits == 0 || done >= passes.max(1) {
-                self.finish(m, ws, (h, qdd));
-                return Outcome { passes: done, settled: misfits == 0 };
-            }
-            if misfits < best {
-                (best, patience) = (misfits, PATIENCE);
+        (at, v0): (StateRef, &[f64]),
+        (gravity, h): ([f64; 3], f64),
+        (qdd, wanted): (&mut [f64], bool),
+    ) -> usize {
+        self.take_rates(m, at.angles, v0);
+        self.write_inputs(m, ws, h);
+        aba_hybrid(m, ws, (at.q, at.v), gravity, qdd);
+        let loose = self.couple(m, ws, at, h, qdd);
+        let misfits = self.misfits(m, ws, (h, qdd)) + loose;
+        if misfits > 0 && wanted {
+            if misfits < self.best {
+                (self.best, self.patience) = (misfits, PATIENCE);
             } else {
-                patience = patience.saturating_sub(1);
+                self.patience = self.patience.saturating_sub(1);
             }
-            self.apply(patience > 0);
+            self.apply(self.patience > 0);
+            self.set_weights(m);
+        }
+        misfits
+    }
+
+    /// Notes for every axis to which side it leaves its part of the law; returns how many do.
+    fn misfits(&mut self, m: &Model, ws: &Workspace<f64>, (h, qdd): (f64, &[f64])) -> usize {
+        let mut count = 0;
+        for (i, axis) in m.axes.iter().enumerate() {
+            self.moves[i] = 0;
+            let (law, place) = (&self.laws[i], self.place[i]);
+            if place % 2 == 1 {
+                self.moves[i] = law.leaves_riser(place / 2, self.riser_torque(m, ws, i, qdd));
+                count += usize::from(self.moves[i] != 0);
+                continue;
+            }
+            let stiff = law.segments[place / 2].slope * h * self.mobility(m, ws, i) > 1.0;
+            self.stiff[i] = stiff;
+            if law.smooth() && (self.at_end[i] || !stiff) {
+                continue;
+            }
+            let end = self.speed[i] + h * self.axis_rate(m, axis, qdd);
+            let mean = if self.at_end[i] { end } else { 0.5 * (self.speed[i] + end) };
+            let (by_mean, by_end) = (law.leaves_segment(place / 2, mean), law.leaves_segment(place / 2, end));
+            self.moves[i] = if by_mean != 0 { by_mean } else { by_end };
+            let hardens = !self.at_end[i] && (stiff || self.moves[i] != 0);
+            self.at_end[i] |= hardens;
+            count += usize::from(hardens || self.moves[i] != 0);
+        }
+        count
+    }
+
+    /// Moves all that do not fit, or only the last of them.
+    fn apply(&mut self, all: bool) {
+        for i in (0..self.moves.len()).rev() {
+            if self.moves[i] == 0 {
+                continue;
+            }
+            self.place[i] = self.laws[i].neighbour(self.place[i], self.moves[i]);
+            self.laws[i].stiction = 0.0;
+            self.at_end[i] |= self.place[i] % 2 == 1;
+            if !all {
+                return;
+            }
         }
     }
 
-    /// Takes the angles of a state; true if a 3DOF group is at its pole.
-    pub fn update_rates(&mut self, m: &Model, s: StateRef) -> bool {
+    /// Ends an implicit step of `h` seconds with these accelerations: remembers the places, writes efforts and work.
+    pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, h: f64, qdd: &[f64]) {
+        self.paid = (0.0, 0.0);
+        for (i, axis) in m.axes.iter().enumerate() {
+            let (law, place) = (&self.laws[i], self.place[i]);
+            let acceleration = self.axis_rate(m, axis, qdd);
+            let end = self.speed[i] + h * acceleration;
+            let moved = if self.at_end[i] { end } else { 0.5 * (self.speed[i] + end) };
+            let k = place / 2;
+            let (effort, total) = if place % 2 == 1 {
+                let (total, speed) = (self.riser_torque(m, ws, i, qdd), law.knots[k].speed);
+                self.memory[i] = law.knots[k].kinds;
+                (law.drive_torque(speed, Some((k, total))), total)
+            } else {
+                self.memory[i] = 0;
+                self.brakes[i].mobility = self.mobility(m, ws, i);
+                (law.drive_torque(moved, None), law.on_segment(k, moved))
+            };
+            self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
+            self.effort[i] = effort;
+            self.paid.0 += 0.5 * h * total * self.speed[i];
+            self.paid.1 += 0.5 * h * total * end;
+            let way = 0.5 * h * (self.speed[i] + end);
+            self.work.drives += effort * way;
+            self.work.losses -= (total - effort) * way;
+        }
+    }
+
+    /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.
+    pub fn paid(&self) -> (f64, f64) {
+        self.paid
+    }
+
+    /// True if no axis has been moved to another part of its law in the last pass.
+    pub fn is_calm(&self) -> bool {
+        self.best == usize::MAX
+    }
+
+    /// Gradients of the angles at these angles; true if a 3DOF group is at its pole.
+    pub fn update_rates(&mut self, m: &Model, angles: &[[f64; 3]]) -> bool {
         let mut at_pole = false;
-        for (rates, (group, angles)) in self.rates.iter_mut().zip(m.eulers.iter().zip(s.angles)) {
+        for (rates, (group, angles)) in self.rates.iter_mut().zip(m.eulers.iter().zip(angles)) {
             *rates = group.rates(*angles);
             at_pole |= rates.at_pole;
         }
         at_pole
     }
 
-    fn write_inputs(&mut self, m: &Model, ws: &mut Workspace<f64>, h: f64) {
-        clear_balls(ws);
-        for i in 0..m.axes.len() {
-            let (law, place, v) = (&self.laws[i], self.place[i], self.speed[i]);
-            let input = if place % 2 == 1 {
-                Input::Locked((law.risers[place / 2].speed - v) / h)
-            } else {
-                Input::Sliding { torque: law.flat(place / 2) - law.slope * v, diagonal: law.slope * h }
-            };
-            self.write(m, ws, i, input);
-        }
-    }
-
-    /// Hands one axis to the hybrid dynamics, through its own coordinate or the gradient of its angle.
-    pub(super) fn write(&mut self, m: &Model, ws: &mut Workspace<f64>, i: usize, input: Input) {
-        match (m.axes[i].slot, input) {
-            (AxisSlot::Apart { .. }, _) => {}
-            (AxisSlot::Scalar { v, .. }, Input::Locked(acceleration)) => ws.dofs[v] = DofIn::locked(acceleration),
-            (AxisSlot::Scalar { v, .. }, Input::Sliding { torque, diagonal }) if diagonal > 0.0 => {
-                ws.dofs[v] = DofIn::implicit(torque, diagonal);
-            }
-            (AxisSlot::Scalar { v, .. }, Input::Sliding { torque, .. }) => ws.dofs[v] = DofIn::free(torque),
-            (AxisSlot::Euler { group, angle }, input) => {
-                let g = self.rates[group].gradient[angle];
-                let ball = &mut ws.ball_in[m.bodies[m.eulers[group].body].ball];
-                match input {
-                    Input::Locked(acceleration) => self.lock[i] = ball.add_lock(g, acceleration),
-                    Input::Sliding { torque, diagonal } => {
-                        ball.tau = g.mad(torque, ball.tau);
-                        ball.inertia.sub_outer(g * -diagonal, g);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Torque that keeps a locked axis to its acceleration.
-    pub(super) fn reaction(&self, m: &Model, ws: &Workspace<f64>, i: usize) -> f64 {
-        match m.axes[i].slot {
-            AxisSlot::Apart { .. } => 0.0,
-            AxisSlot::Scalar { v, .. } => ws.reaction[v],
-            AxisSlot::Euler { group, .. } => {
-                ws.ball_in[m.bodies[m.eulers[group].body].ball].lock[self.lock[i]].reaction
-            }
-        }
-    }
-
-    /// Speed at the end of the step, and the torque of the law (without slope) that goes with it where it is locked.
-    fn end(&self, m: &Model, ws: &Workspace<f64>, i: usize, (h, qdd): (f64, &[f64])) -> (f64, f64) {
-        let (law, place) = (&self.laws[i], self.place[i]);
-        if place % 2 == 1 {
-            let v = law.risers[place / 2].speed;
-            return (v, self.reaction(m, ws, i) + law.slope * v);
-        }
-        let acceleration = match m.axes[i].slot {
-            AxisSlot::Apart { .. } => 0.0,
-            AxisSlot::Scalar { v: k, .. } => qdd[k],
+    /// Rate of an axis for rates of the velocity coordinates: its speed from velocities, its acceleration from
+    /// accelerations (of an angle: with its gradient held).
+    pub(super) fn axis_rate(&self, m: &Model, axis: &Axis, rates: &[f64]) -> f64 {
+        match axis.slot {
+            AxisSlot::Scalar { v, .. } => rates[v],
             AxisSlot::Euler { group, angle } => {
+                let g = self.rates[group].gradient[angle];
                 let at = m.eulers[group].v;
-                self.rates[group].gradient[angle].dot(V3::new(qdd[at], qdd[at + 1], qdd[at + 2]))
+                g.dot(V3::new(rates[at], rates[at + 1], rates[at + 2]))
             }
-        };
-        (self.speed[i] + h * acceleration, 0.0)
-    }
-
-    /// Notes for every axis to which side it leaves its part of the law; returns how many do.
-    fn misfits(&mut self, m: &Model, ws: &Workspace<f64>, end: (f64, &[f64])) -> usize {
-        for i in 0..self.laws.len() {
-            self.moves[i] = 0;
-            if !self.laws[i].smooth() {
-                let (v, torque) = self.end(m, ws, i, end);
-                self.moves[i] = self.laws[i].step(self.place[i], v, torque);
-            }
+            AxisSlot::Apart { .. } => 0.0,
         }
-        self.moves.iter().filter(|s| **s != 0).count()
-    }
-
-    /// Moves all that do not fit, or only the last of them.
-    fn apply(&mut self, all: bool) {
-        for (place, step) in self.place.iter_mut().zip(&self.moves).rev() {
-            *place = place.saturating_add_signed(*step);
-            if !all && *step != 0 {
-                return;
-            }
-        }
-    }
-
-    /// Remembers the places and writes the efforts.
-    fn finish(&mut self, m: &Model, ws: &Workspace<f64>, end: (f64, &[f64])) {
-        for i in 0..self.laws.len() {
-            let (v, torque) = self.end(m, ws, i, end);
-            let law = &self.laws[i];
-            let riser = (self.place[i] % 2 == 1).then_some(self.place[i] / 2);
-            self.memory[i] = riser.map_or(0, |k| law.risers[k].kinds);
-            self.effort[i] = law.drive_torque(v, riser.map(|k| (k, torque)));
-        }
-    }
-}
-
-/// What the hybrid dynamics get of one axis.
-pub(super) enum Input {
-    /// Acceleration of the axis; for an angle of a group, gradient·ω̇.
-    Locked(f64),
-    /// Torque, and what is added to the diagonal of the mass matrix.
-    Sliding { torque: f64, diagonal: f64 },
-}
-
-/// Axes add to the inputs of their group's joint, so these start from nothing.
-pub(super) fn clear_balls(ws: &mut Workspace<f64>) {
-    for input in &mut ws.ball_in {
-        *input = Default::default();
-    }
-}
-
-impl Law {
-    /// First place: the riser it stood on, else by its speed.
-    fn guess(&self, v: f64, memory: u8) -> usize {
-        let risers = &self.risers[..self.count];
-        if let Some(k) = risers.iter().position(|r| r.kinds & memory != 0) {
-            return 2 * k + 1;
-        }
-        if let Some(k) = risers.iter().position(|r| r.speed == v) {
-            return 2 * k + 1;
-        }
-        let flat = risers.iter().take_while(|r| r.speed < v).count();
-        match (flat, risers.first(), risers.last()) {
-            (0, Some(r), _) if r.left == f64::INFINITY => 1,
-            (n, _, Some(r)) if n == self.count && r.right == f64::NEG_INFINITY => 2 * n - 1,
-            (n, ..) => 2 * n,
-        }
-    }
-
-    /// To which side the solution leaves this part of the law: −1 left, 0 not at all, +1 right.
-    pub(super) fn step(&self, place: usize, v: f64, torque: f64) -> isize {
-        let k = place / 2;
-        if place % 2 == 1 {
-            let r = &self.risers[k];
-            let slack = FIT * (1.0 + torque.abs());
-            return isize::from(torque < r.right - slack) - isize::from(torque > r.left + slack);
-        }
-        let slack = FIT * (1.0 + v.abs());
-        let below = k > 0 && v < self.risers[k - 1].speed - slack;
-        let above = k < self.count && v > self.risers[k].speed + slack;
-        isize::from(above) - isize::from(below)
     }
 }

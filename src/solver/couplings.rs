@@ -2,11 +2,10 @@
 //! the axes are asked whether they fit their laws. So a follower's stop holds its leader, and a leader's servo carries its
 //! followers, without a law that knows of the other.
 
-use super::axis_set::{AxisSet, StateRef};
+use super::axis_set::{AxisSet, StateRef, StepStart};
 use super::law::{LOWER, UPPER};
 use super::rows::{Kind, Rows};
 use crate::dynamics::{Push, Response, Workspace};
-use crate::math::V3;
 use crate::model::{AxisSlot, Coupling, Model};
 
 /// Share of a follower's deviation that one step takes back. The rows keep the velocities together to rounding, so it has
@@ -14,6 +13,8 @@ use crate::model::{AxisSlot, Coupling, Model};
 const ERP: f64 = 0.2;
 /// The same in the stages of an explicit step: time constant of a critically damped return, in steps.
 const RETURN: f64 = 10.0;
+/// Sweeps before the direct finish. Couplings are few and equalities, so the finish is exact and cheap.
+const SWEEPS: u32 = 10;
 /// Share of the velocities at the start to which the rows are solved if that is possible: rounding, so that an explicit step
 /// keeps its order and its energy.
 const AIM: f64 = 1e-14;
@@ -59,8 +60,6 @@ struct Pair {
 pub struct Stage {
     /// Step, s.
     pub h: f64,
-    /// W-6.
-    pub sweeps: u32,
     /// Is this the first stage of the step? There the deviation is read that all stages take back.
     pub first: bool,
 }
@@ -109,14 +108,7 @@ impl Couplings {
     }
 
     /// Solves the rows of `self.pairs` for a step of `h` and applies their impulses. True if that converged.
-    fn solve(
-        &mut self,
-        m: &Model,
-        ws: &mut Workspace<f64>,
-        q: &[f64],
-        (h, sweeps): (f64, u32),
-        qdd: &mut [f64],
-    ) -> bool {
+    fn solve(&mut self, m: &Model, ws: &mut Workspace<f64>, q: &[f64], h: f64, qdd: &mut [f64]) -> bool {
         if self.h > 0.0 && self.h != h {
             self.rows.scale_impulses(h / self.h);
         }
@@ -131,20 +123,12 @@ impl Couplings {
                 self.rows.switch_off(k);
             }
         }
-        let solved = self.rows.solve(sweeps, AIM);
+        let solved = self.rows.solve(SWEEPS, AIM);
         for k in 0..self.pairs.len() {
             self.push(k, self.rows.row_impulse(k) / h);
         }
         self.response.apply(m, ws, q, qdd);
         solved.within(TOLERANCE)
-    }
-
-    /// Is this follower harder to move than its leader, and than all that follow the same one?
-    fn leads(&self, m: &Model, ws: &Workspace<f64>, c: &Coupling) -> bool {
-        let own = ws.mobility(m, c.follower);
-        let easier = |o: &Coupling| own * o.ratio * o.ratio <= ws.mobility(m, o.follower) * c.ratio * c.ratio;
-        let others = self.pairs.iter().map(|p| &p.coupling).filter(|o| o.leader == c.leader);
-        own < c.ratio * c.ratio * ws.mobility(m, c.leader) && others.into_iter().all(easier)
     }
 
     fn push(&mut self, k: usize, force: f64) {
@@ -178,31 +162,59 @@ impl Seat {
 }
 
 impl AxisSet {
+    /// Reads how far the followers are from where their leaders put them at the start of an implicit step.
+    pub(super) fn start_couplings(&mut self, m: &Model, start: &StepStart) {
+        let Some(mut couplings) = self.couplings.take() else { return };
+        for pair in &mut couplings.pairs {
+            let motion = |axis: usize| Motion { q: self.axis_state(m, &m.axes[axis], start.state).0, v: 0.0, a: 0.0 };
+            pair.back = ERP * deviation(pair, &motion(pair.coupling.follower), &motion(pair.coupling.leader)) / start.h;
+        }
+        self.couplings = Some(couplings);
+    }
+
+    /// Coupled axes move alike: with their speeds at the end of the step as soon as one of them does.
+    pub(super) fn share_ends(&mut self, m: &Model) {
+        let Some(couplings) = self.couplings.take() else { return };
+        let group = |axis: usize| match m.axes[axis].slot {
+            AxisSlot::Euler { group, .. } => Some(group),
+            _ => None,
+        };
+        let ends = |at_end: &[bool], axis: usize| match group(axis) {
+            None => at_end[axis],
+            own => (0..at_end.len()).any(|i| at_end[i] && group(i) == own),
+        };
+        for _ in 0..couplings.pairs.len() {
+            let mut changed = false;
+            for Coupling { follower, leader, .. } in couplings.pairs.iter().map(|p| p.coupling) {
+                let end = ends(&self.at_end, follower) || ends(&self.at_end, leader);
+                changed |= end && !(self.at_end[follower] && self.at_end[leader]);
+                self.at_end[follower] |= end;
+                self.at_end[leader] |= end;
+            }
+            if !changed {
+                break;
+            }
+        }
+        self.couplings = Some(couplings);
+    }
+
     /// After a pass of an implicit step of `h` seconds: brings the ends of the step together, in `qdd` and `ws`. Returns how
     /// many couplings do not hold; then the laws have to be asked again.
-    pub(super) fn couple(
-        &mut self,
-        m: &Model,
-        ws: &mut Workspace<f64>,
-        s: StateRef,
-        (h, sweeps): (f64, u32),
-        qdd: &mut [f64],
-    ) -> usize {
+    pub(super) fn couple(&mut self, m: &Model, ws: &mut Workspace<f64>, s: StateRef, h: f64, qdd: &mut [f64]) -> usize {
         let Some(mut couplings) = self.couplings.take() else { return 0 };
         for pair in &mut couplings.pairs {
             let (follower, leader, ratio) = self.motions(m, s, pair, qdd, false);
-            pair.back = ERP * deviation(pair, &follower, &leader) / h;
             pair.bias = follower.v + h * follower.a - ratio * (leader.v + h * leader.a) + pair.back;
             self.set_up(m, pair, (follower, leader, h));
         }
-        let converged = couplings.solve(m, ws, s.q, (h, sweeps), qdd);
+        let converged = couplings.solve(m, ws, s.q, h, qdd);
         let mut loose = usize::from(!converged);
         let mut forced = false;
         for k in 0..couplings.pairs.len() {
             let pair = couplings.pairs[k];
             if couplings.rows.is_off(k) && pair.bias.abs() > pair.slack {
                 loose += 1;
-                let force = self.break_loose(m, ws, &pair);
+                let force = self.break_loose(m, ws, &pair, qdd);
                 couplings.push(k, force);
                 forced |= force != 0.0;
             }
@@ -246,7 +258,7 @@ impl AxisSet {
             pair.bias = h * (follower.a - ratio * leader.a + pair.back);
             self.set_up(m, pair, (follower, leader, h));
         }
-        let converged = couplings.solve(m, ws, s.q, (h, stage.sweeps), qdd);
+        let converged = couplings.solve(m, ws, s.q, h, qdd);
         let held = |k: usize| couplings.rows.is_off(k) && couplings.pairs[k].bias.abs() > couplings.pairs[k].slack;
         let loose = (0..couplings.pairs.len()).any(held);
         self.agree((m, ws), &couplings, qdd, |_, _, a| a, |_, _, end| end);
@@ -274,7 +286,7 @@ impl AxisSet {
                 else {
                     continue;
                 };
-                if couplings.rows.is_off(k) || couplings.leads(m, ws, &c) != to_leaders {
+                if couplings.rows.is_off(k) || self.leads(m, ws, couplings, &c) != to_leaders {
                     continue;
                 }
                 if to_leaders {
@@ -288,13 +300,21 @@ impl AxisSet {
         }
     }
 
+    /// Is this follower harder to move than its leader, and than all that follow the same one?
+    fn leads(&self, m: &Model, ws: &Workspace<f64>, couplings: &Couplings, c: &Coupling) -> bool {
+        let own = self.mobility(m, ws, c.follower);
+        let easier = |o: &Coupling| own * o.ratio * o.ratio <= self.mobility(m, ws, o.follower) * c.ratio * c.ratio;
+        let mut others = couplings.pairs.iter().map(|p| &p.coupling).filter(|o| o.leader == c.leader);
+        own < c.ratio * c.ratio * self.mobility(m, ws, c.leader) && others.all(easier)
+    }
+
     /// Speed of an axis at the end of an implicit step.
     fn speed_at_end(&self, axis: usize, acceleration: f64, h: f64) -> f64 {
         let place = self.place[axis];
         if place.is_multiple_of(2) {
             return self.speed[axis] + h * acceleration;
         }
-        self.laws[axis].risers[place / 2].speed
+        self.laws[axis].knots[place / 2].speed
     }
 
     /// Motion of follower and leader, and the ratio. The acceleration of an angle of a group is that of its gradient,
@@ -302,22 +322,19 @@ impl AxisSet {
     fn motions(&self, m: &Model, s: StateRef, pair: &Pair, qdd: &[f64], real: bool) -> (Motion, Motion, f64) {
         let motion = |axis: usize| {
             let (q, v) = self.axis_state(m, &m.axes[axis], s);
+            let v = if real { v } else { self.speed[axis] };
             Motion { q, v, a: self.acceleration(m, s, axis, qdd, real) }
         };
         (motion(pair.coupling.follower), motion(pair.coupling.leader), pair.coupling.ratio)
     }
 
     fn acceleration(&self, m: &Model, s: StateRef, axis: usize, qdd: &[f64], real: bool) -> f64 {
+        let along = self.axis_rate(m, &m.axes[axis], qdd);
         match m.axes[axis].slot {
-            AxisSlot::Apart { .. } => 0.0,
-            AxisSlot::Scalar { v, .. } => qdd[v],
-            AxisSlot::Euler { group, angle } => {
-                let (e, gradient) = (&m.eulers[group], self.rates[group].gradient);
-                let w = V3::new(s.v[e.v], s.v[e.v + 1], s.v[e.v + 2]);
-                let change = V3::new(qdd[e.v], qdd[e.v + 1], qdd[e.v + 2]);
-                let turning = e.direction_rates(s.angles[group], gradient.map(|g| g.dot(w)));
-                gradient[angle].dot(if real { change - turning } else { change })
+            AxisSlot::Euler { group, angle } if real => {
+                along - self.rates[group].gradient[angle].dot(self.turning(m, s, group))
             }
+            _ => along,
         }
     }
 
@@ -345,34 +362,33 @@ impl AxisSet {
     /// Follower and leader are both locked, to speeds that do not agree. The force between them grows until the first of
     /// them leaves its riser: that force is returned. A drive that nothing bounds yields to the other by its speed instead,
     /// the follower's before the leader's; stops do not yield.
-    fn break_loose(&mut self, m: &Model, ws: &Workspace<f64>, pair: &Pair) -> f64 {
+    fn break_loose(&mut self, m: &Model, ws: &Workspace<f64>, pair: &Pair, qdd: &[f64]) -> f64 {
         let c = pair.coupling;
         let sense = -pair.bias.signum();
         let forces =
-            [(c.follower, 1.0), (c.leader, -c.ratio)].map(|(axis, factor)| self.room(m, ws, axis, factor * sense));
+            [(c.follower, 1.0), (c.leader, -c.ratio)].map(|(axis, factor)| self.room(m, ws, axis, factor * sense, qdd));
         let force = forces[0].min(forces[1]);
         if force.is_finite() {
             return sense * force;
         }
         let [follower, leader] = [c.follower, c.leader].map(|axis| self.yielding_riser(axis));
         if let Some(riser) = follower {
-            self.laws[c.follower].risers[riser].speed -= pair.bias;
+            self.laws[c.follower].knots[riser].speed -= pair.bias;
         } else if let Some(riser) = leader.filter(|_| c.ratio != 0.0) {
-            self.laws[c.leader].risers[riser].speed += pair.bias / c.ratio;
+            self.laws[c.leader].knots[riser].speed += pair.bias / c.ratio;
         }
         0.0
     }
 
     /// The force between a locked axis and its partner at which the axis leaves its riser; `factor` is the torque on it per
     /// force. Infinite if nothing bounds it, or if it is not locked.
-    fn room(&self, m: &Model, ws: &Workspace<f64>, axis: usize, factor: f64) -> f64 {
+    fn room(&self, m: &Model, ws: &Workspace<f64>, axis: usize, factor: f64, qdd: &[f64]) -> f64 {
         let (law, place) = (&self.laws[axis], self.place[axis]);
         if place.is_multiple_of(2) || factor == 0.0 {
             return f64::INFINITY;
         }
-        let riser = &law.risers[place / 2];
-        let torque = self.reaction(m, ws, axis) + law.slope * riser.speed;
-        let left = if factor > 0.0 { torque - riser.right } else { riser.left - torque };
+        let torque = self.riser_torque(m, ws, axis, qdd);
+        let left = law.room(place / 2, torque, factor > 0.0);
         // A little beyond, so that the law sees it.
         (left.max(0.0) + 1e-6 * (1.0 + torque.abs())) / factor.abs()
     }
@@ -380,7 +396,7 @@ impl AxisSet {
     /// The riser an axis stands on, if a drive without bound holds it there.
     fn yielding_riser(&self, axis: usize) -> Option<usize> {
         let (law, place) = (&self.laws[axis], self.place[axis]);
-        let kinds = if place.is_multiple_of(2) { LOWER } else { law.risers[place / 2].kinds };
+        let kinds = if place.is_multiple_of(2) { LOWER } else { law.knots[place / 2].kinds };
         (kinds & (LOWER | UPPER) == 0).then_some(place / 2)
     }
 }

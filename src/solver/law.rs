@@ -1,65 +1,80 @@
-//! The law of one axis: torque over the velocity at the end of the step.
+//! The law of one axis: torque over its speed in the step.
 //!
-//! Dry friction is a riser at speed 0, a servo a riser at its target speed, a stop a riser at the speed that just reaches
-//! the stop; viscous terms are a slope. So the sum is a monotone staircase:
+//! Dry friction is a riser at speed 0, a servo a riser at the speed that it wants, a hard stop a riser at the speed that just
+//! reaches it; damping, the torque–speed line of a drive, a short brake and a soft stop are slopes. All of them only push
+//! against motion, so their sum never rises:
 //!
 //! ```text
-//! torque  ──┐ flat 0
-//!           │ riser 0 (servo, here below 0)
-//!           └───┐ flat 1
-//!               │ riser 1 (friction, speed 0)
-//!               └────┐ flat 2
-//!                    │ riser 2 (stop)
-//!                    ▼ −∞                      → speed
+//! torque  ──╲ segment 0
+//!            ╲ knot 0, a kink (end of the current limit)
+//!             │ knot 1, a riser (friction, speed 0)
+//!             ╲ segment 2
+//!              │ knot 2, a riser to −∞ (hard stop)      → speed
 //! ```
 
-use super::{AxisCommand, Mode};
-use crate::model::{Axis, Effects};
+use super::AxisCommand;
+use super::drive::{Brakes, DriveLaw};
+use crate::model::{Axis, DriveLimits, Effects};
 
-/// Share of a stop's penetration that one step takes back (ODE's default error reduction).
-pub const STOP_ERP: f64 = 0.2;
-/// A servo closes this on its target: the error decays with this time constant, s, as far as torque and speed allow.
-pub const SERVO_TIME: f64 = 0.05;
-/// Speeds nearer than this are one riser, rad/s or m/s.
+/// Knots at the most: friction, two of the drive, two stops.
+const KNOTS: usize = 5;
+/// Speeds nearer than this are one knot, rad/s or m/s.
 const SAME: f64 = 1e-12;
-
 /// An axis this near to its stop touches it: rounding of the step that brought it there; rad or m, relative.
 const AT_STOP: f64 = 1e-14;
+/// Relative tolerance of the fit.
+const FIT: f64 = 1e-11;
 
 /// What a riser is made of, as bits.
 pub(super) const FRICTION: u8 = 1;
 pub(super) const SERVO: u8 = 2;
 pub(super) const LOWER: u8 = 4;
 pub(super) const UPPER: u8 = 8;
+/// Nothing gets past it to the left, or to the right: a hard stop; both: a servo without a bound.
+pub(super) const WALL_LEFT: u8 = 16;
+pub(super) const WALL_RIGHT: u8 = 32;
 
-/// A vertical part of the staircase.
+/// Where the law jumps or bends.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Riser {
+pub(super) struct Knot {
     /// Speed at which it stands.
     pub speed: f64,
-    /// Torque at its left (upper) and right (lower) end; +∞ and −∞ at stops.
-    pub left: f64,
-    pub right: f64,
+    /// Torque that is lost there, beside what its walls take.
+    pub drop: f64,
+    /// Slope of the segment behind it minus that of the one before it.
+    pub steeper: f64,
     /// What it is made of.
     pub kinds: u8,
+}
+
+/// `torque = intercept − slope · speed`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Segment {
+    pub intercept: f64,
+    pub slope: f64,
+}
+
+impl Segment {
+    fn at(&self, speed: f64) -> f64 {
+        self.intercept - self.slope * speed
+    }
 }
 
 /// The law of one axis in one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Law {
-    pub(super) risers: [Riser; 4],
+    pub(super) knots: [Knot; KNOTS],
     pub(super) count: usize,
-    /// Torque of the first flat; the others follow from the risers.
-    first: f64,
-    /// Viscous slope ≥ 0: torque per speed, damping and drive together.
-    pub(super) slope: f64,
-    /// The drive's part of the slope.
-    drive_slope: f64,
-    /// Torque that does not depend on speed: the drive in torque mode.
-    constant: f64,
-    servo: f64,
-    servo_speed: f64,
+    pub(super) segments: [Segment; KNOTS + 1],
+    /// By how much static friction exceeds the dynamic one, as long as the axis has not broken loose.
+    pub(super) stiction: f64,
+    /// Outside its range: by how much it is put back after the step, rad or m, signed.
+    pub(super) push: f64,
+    /// The axis stands in a soft stop: a spring, whose speed is that at the end of the step.
+    pub(super) in_soft_stop: bool,
+    damping: f64,
     friction: f64,
+    pub(super) drive: DriveLaw,
 }
 
 /// What the law of an axis depends on.
@@ -67,125 +82,209 @@ pub struct Law {
 pub struct AxisInput<'a> {
     /// The axis.
     pub axis: &'a Axis,
+    /// Its drive as it is now.
+    pub limits: &'a DriveLimits,
     /// Its command.
     pub command: AxisCommand,
     /// Position, rad or m.
     pub q: f64,
-    /// Speed, rad/s or m/s.
-    pub v: f64,
+    /// It stood still in its dry friction at the end of the last step.
+    pub stuck: bool,
+    /// What a servo knows of its load.
+    pub brakes: Brakes,
 }
 
 /// The law of an axis for a step of `h` seconds.
 pub fn law(input: &AxisInput, effects: Effects, h: f64) -> Law {
     let mut l = Law::default();
-    let axis = input.axis;
     if effects.damping {
-        l.slope = axis.damping;
+        l.damping = input.axis.damping;
+        l.segments[0].slope = l.damping;
     }
     if effects.drives {
-        l.drive(input, h);
-    }
-    if effects.friction && axis.friction > 0.0 {
-        l.friction = axis.friction;
-        l.insert(0.0, axis.friction, FRICTION);
+        l.drive = DriveLaw::of(input, h);
     }
     if effects.limits {
         l.stops(input, h);
+    }
+    l.add_drive();
+    if effects.friction {
+        l.dry_friction(input);
     }
     l.finish();
     l
 }
 
 impl Law {
-    fn drive(&mut self, input: &AxisInput, h: f64) {
-        let (axis, c) = (input.axis, &input.command);
-        match c.mode {
-            Mode::Idle => {}
-            Mode::Torque => {
-                let torque = if c.torque.is_nan() { 0.0 } else { c.torque };
-                self.constant = bounded(torque, axis.drive.max_torque);
-                let speed = given(c.speed, axis.drive.no_load_speed).min(axis.drive.no_load_speed);
-                if speed.is_finite() && speed > 0.0 && self.constant * input.v > 0.0 {
-                    self.drive_slope = self.constant.abs() / speed;
-                    self.slope += self.drive_slope;
-                }
-            }
-            Mode::Servo => {
-                let error = c.target - input.q;
-                let bound = given(c.speed, axis.drive.max_speed).min(axis.drive.max_speed);
-                self.servo_speed = bounded(error / SERVO_TIME.max(h), bound);
-                self.servo = given(c.torque, axis.drive.max_torque).min(axis.drive.max_torque);
-                self.insert(self.servo_speed, self.servo, SERVO);
-            }
+    /// A servo without a bound on its torque wants what the stops allow.
+    fn add_drive(&mut self) {
+        let wall = |kind: u8| self.knots[..self.count].iter().find(|k| k.kinds & kind != 0).map(|k| k.speed);
+        if let DriveLaw::Servo { wanted, torque: f64::INFINITY, .. } = &mut self.drive {
+            *wanted = wanted.max(wall(WALL_LEFT).unwrap_or(f64::NEG_INFINITY));
+            *wanted = wanted.min(wall(WALL_RIGHT).unwrap_or(f64::INFINITY));
+        }
+        let (start, knots) = self.drive.staircase();
+        self.segments[0].intercept += start.intercept;
+        self.segments[0].slope += start.slope;
+        knots.into_iter().flatten().for_each(|k| self.insert(k));
+    }
+
+    fn dry_friction(&mut self, input: &AxisInput) {
+        let limits = input.limits;
+        self.friction = input.axis.friction + limits.dynamic_resistance;
+        if input.stuck {
+            self.stiction = (limits.static_resistance - limits.dynamic_resistance).max(0.0);
+        }
+        if self.friction + self.stiction > 0.0 {
+            self.segments[0].intercept += self.friction;
+            self.insert(Knot { speed: 0.0, drop: 2.0 * self.friction, steeper: 0.0, kinds: FRICTION });
         }
     }
 
-    /// A stop is reached exactly at the end of the step; a penetrated one is left by [`STOP_ERP`].
+    /// A stop is reached exactly at the end of the step. A soft one yields by its CFM per torque, and its ERP is that of its
+    /// spring. Beyond a hard one the axis may only come back; its ERP's share of the way is a push that gives no speed.
     fn stops(&mut self, input: &AxisInput, h: f64) {
-        let axis = input.axis;
+        let (axis, soft) = (input.axis, input.axis.stop.cfm > 0.0);
         let touching = AT_STOP * (1.0 + input.q.abs());
         let room = |gap: f64| match gap {
             _ if gap.abs() <= touching => 0.0,
             _ if gap > 0.0 => gap / h,
-            _ => STOP_ERP * gap / h,
+            _ if soft => axis.stop.erp * gap / h,
+            _ => 0.0,
         };
-        if axis.lower.is_finite() {
-            self.insert(-room(input.q - axis.lower), 0.0, LOWER);
-        }
-        if axis.upper.is_finite() {
-            self.insert(room(axis.upper - input.q), 0.0, UPPER);
+        let stiffness = if soft { 1.0 / axis.stop.cfm } else { 0.0 };
+        for (gap, side, kind) in [(input.q - axis.lower, -1.0, LOWER), (axis.upper - input.q, 1.0, UPPER)] {
+            if !gap.is_finite() {
+                continue;
+            }
+            let speed = side * room(gap);
+            if soft && kind == LOWER {
+                self.segments[0].slope += stiffness;
+                self.segments[0].intercept += stiffness * speed;
+            }
+            if !soft && gap < -touching {
+                self.push += side * axis.stop.erp * gap;
+            }
+            self.in_soft_stop |= soft && gap <= 0.0;
+            let wall = if kind == LOWER { WALL_LEFT } else { WALL_RIGHT };
+            let kinds = if soft { kind } else { kind | wall };
+            self.insert(Knot { speed, drop: 0.0, steeper: side * stiffness, kinds });
         }
     }
 
-    /// `right` holds the half height until [`Law::finish`].
-    fn insert(&mut self, speed: f64, half: f64, kinds: u8) {
-        if let Some(r) = self.risers[..self.count].iter_mut().find(|r| (r.speed - speed).abs() <= SAME) {
-            r.right += half;
-            r.kinds |= kinds;
+    fn insert(&mut self, knot: Knot) {
+        if let Some(k) = self.knots[..self.count].iter_mut().find(|k| (k.speed - knot.speed).abs() <= SAME) {
+            k.drop += knot.drop;
+            k.steeper += knot.steeper;
+            k.kinds |= knot.kinds;
             return;
         }
-        let at = self.risers[..self.count].iter().take_while(|r| r.speed < speed).count();
-        self.risers.copy_within(at..self.count, at + 1);
-        self.risers[at] = Riser { speed, left: 0.0, right: half, kinds };
-        self.count += 1;
+        let at = self.knots[..self.count].iter().take_while(|k| k.speed < knot.speed).count();
+        if self.count < KNOTS {
+            self.knots.copy_within(at..self.count, at + 1);
+            self.knots[at] = knot;
+            self.count += 1;
+        }
     }
 
-    /// Drops what lies beyond a stop and turns heights into torques.
+    /// The segments behind the first one follow from the knots.
     fn finish(&mut self) {
-        if self.servo == f64::INFINITY {
-            return self.finish_unbounded();
-        }
-        let risers = &mut self.risers;
-        let start = risers[..self.count].iter().position(|r| r.kinds & LOWER != 0).unwrap_or(0);
-        let beyond: f64 = risers[..start].iter().map(|r| r.right).sum();
-        risers.copy_within(start..self.count, 0);
-        self.count -= start;
-        if let Some(end) = risers[..self.count].iter().position(|r| r.kinds & UPPER != 0) {
-            self.count = end + 1;
-        }
-        let all = self.servo + self.friction;
-        self.first = self.constant + all - 2.0 * beyond;
-        let mut torque = self.first;
-        for r in &mut risers[..self.count] {
-            let half = r.right;
-            r.left = if r.kinds & LOWER != 0 { f64::INFINITY } else { torque };
-            torque -= 2.0 * half;
-            r.right = if r.kinds & UPPER != 0 { f64::NEG_INFINITY } else { torque };
+        for k in 0..self.count {
+            let (knot, before) = (self.knots[k], self.segments[k]);
+            let slope = before.slope + knot.steeper;
+            let intercept = before.intercept + knot.steeper * knot.speed - knot.drop;
+            self.segments[k + 1] = Segment { intercept, slope };
         }
     }
 
-    /// A servo that nothing bounds is one riser from +∞ to −∞; only a stop moves it.
-    fn finish_unbounded(&mut self) {
-        let stop = |kind| self.risers[..self.count].iter().find(|r| r.kinds & kind != 0).map(|r| r.speed);
-        let speed =
-            self.servo_speed.max(stop(LOWER).unwrap_or(f64::NEG_INFINITY)).min(stop(UPPER).unwrap_or(f64::INFINITY));
-        self.risers[0] = Riser { speed, left: f64::INFINITY, right: f64::NEG_INFINITY, kinds: SERVO | FRICTION };
-        self.count = 1;
+    /// How much more than this the torque can fall (`falls`) or rise before riser `k` is left; infinite at a wall.
+    pub(super) fn room(&self, k: usize, torque: f64, falls: bool) -> f64 {
+        let (left, right) = self.ends(k);
+        let stiction = if self.knots[k].kinds & FRICTION != 0 { self.stiction } else { 0.0 };
+        (if falls { torque - right } else { left - torque }) + stiction
     }
 
-    /// Torque of flat `j`, without the slope.
-    pub(super) fn flat(&self, j: usize) -> f64 {
-        if j == 0 { self.first } else { self.risers[j - 1].right }
+    /// Torques at the left (upper) and right (lower) end of a riser.
+    fn ends(&self, k: usize) -> (f64, f64) {
+        let knot = &self.knots[k];
+        let wall = |kind: u8| knot.kinds & kind != 0;
+        let left = if wall(WALL_LEFT) { f64::INFINITY } else { self.segments[k].at(knot.speed) };
+        let right = if wall(WALL_RIGHT) { f64::NEG_INFINITY } else { self.segments[k + 1].at(knot.speed) };
+        (left, right)
+    }
+
+    fn is_riser(&self, k: usize) -> bool {
+        let knot = &self.knots[k];
+        let sticks = self.stiction > 0.0 && knot.kinds & FRICTION != 0;
+        knot.drop > 0.0 || knot.kinds & (WALL_LEFT | WALL_RIGHT) != 0 || sticks
+    }
+
+    /// Places between the walls: 2 j on segment j, 2 k + 1 on riser k.
+    fn within_walls(&self, place: usize) -> usize {
+        let knots = &self.knots[..self.count];
+        let wall = |kind: u8| move |k: &Knot| k.kinds & kind != 0;
+        let low = knots.iter().rposition(wall(WALL_LEFT)).map_or(0, |k| 2 * k + 1);
+        let high = knots.iter().position(wall(WALL_RIGHT)).map_or(2 * self.count, |k| 2 * k + 1);
+        place.max(low).min(high.max(low))
+    }
+
+    /// First place: the riser it stood on, else by its speed.
+    pub(super) fn guess(&self, v: f64, memory: u8) -> usize {
+        let knots = &self.knots[..self.count];
+        let riser = |k: &usize| self.is_riser(*k);
+        if let Some(k) = (0..self.count).filter(riser).find(|k| knots[*k].kinds & memory != 0) {
+            return self.within_walls(2 * k + 1);
+        }
+        if let Some(k) = (0..self.count).filter(riser).find(|k| knots[*k].speed == v) {
+            return self.within_walls(2 * k + 1);
+        }
+        // At a kink from rest, the side to which the drive pushes.
+        let behind = |k: &&Knot| k.speed < v || (k.speed == v && k.steeper > 0.0);
+        self.within_walls(2 * knots.iter().take_while(behind).count())
+    }
+
+    /// To which side the solution leaves riser `k`, whose law must give this torque: −1 left, 0 not at all, +1 right.
+    pub(super) fn leaves_riser(&self, k: usize, torque: f64) -> isize {
+        let (left, right) = self.ends(k);
+        let slack = FIT * (1.0 + torque.abs()) + if self.knots[k].kinds & FRICTION != 0 { self.stiction } else { 0.0 };
+        isize::from(torque < right - slack) - isize::from(torque > left + slack)
+    }
+
+    /// To which side a speed is beyond segment `j`: −1, 0, +1.
+    pub(super) fn leaves_segment(&self, j: usize, v: f64) -> isize {
+        let slack = FIT * (1.0 + v.abs());
+        let below = j > 0 && v < self.knots[j - 1].speed - slack;
+        let above = j < self.count && v > self.knots[j].speed + slack;
+        isize::from(above) - isize::from(below)
+    }
+
+    /// A speed that fits this place, without the rounding that made it fit only nearly.
+    pub(super) fn rounded(&self, place: usize, v: f64) -> f64 {
+        let j = place / 2;
+        if place % 2 == 1 {
+            return self.knots[j].speed;
+        }
+        if self.smooth() || self.leaves_segment(j, v) != 0 {
+            return v;
+        }
+        let low = if j > 0 { self.knots[j - 1].speed } else { f64::NEG_INFINITY };
+        let high = if j < self.count { self.knots[j].speed } else { f64::INFINITY };
+        v.max(low).min(high)
+    }
+
+    /// The neighbouring place; a kink has no place of its own.
+    pub(super) fn neighbour(&self, place: usize, side: isize) -> usize {
+        let next = place.saturating_add_signed(side);
+        let kink = next % 2 == 1 && !self.is_riser(next / 2);
+        self.within_walls(if kink { next.saturating_add_signed(side) } else { next })
+    }
+
+    /// True if speed `v` is still on this segment; stops are checked by position instead.
+    pub(super) fn stays_between_knots(&self, j: usize, v: f64) -> bool {
+        let counts = |k: usize| self.knots[k].kinds & (LOWER | UPPER) == 0;
+        let below = j > 0 && counts(j - 1) && v <= self.knots[j - 1].speed;
+        let above = j < self.count && counts(j) && v >= self.knots[j].speed;
+        !below && !above
     }
 
     /// True if only viscous and constant torques act.
@@ -193,37 +292,34 @@ impl Law {
         self.count == 0
     }
 
-    /// True if no stop is part of the law.
-    pub(super) fn stopless(&self) -> bool {
-        self.risers[..self.count].iter().all(|r| r.kinds & (LOWER | UPPER) == 0)
+    /// Is a hard or soft stop part of the law?
+    pub(super) fn has_stop(&self) -> bool {
+        self.knots[..self.count].iter().any(|k| k.kinds & (LOWER | UPPER) != 0)
     }
 
-    /// Torque of the drive at the end of the step: at speed `v`, on flat or riser, where `total` is the law's torque
-    /// without slope. On a riser friction takes its part first, then the drive; what is left is the stop's.
-    pub(super) fn drive_torque(&self, v: f64, riser: Option<(usize, f64)>) -> f64 {
-        let steady = self.constant - self.drive_slope * v;
-        let beside = |speed: f64, height: f64| if v < speed { height } else { -height };
-        let Some((k, total)) = riser else {
-            return steady + if self.servo > 0.0 { beside(self.servo_speed, self.servo) } else { 0.0 };
-        };
-        let kinds = self.risers[k].kinds;
-        let mut rest = total - self.constant;
-        if self.servo > 0.0 && kinds & SERVO == 0 {
-            return steady + beside(self.servo_speed, self.servo);
-        }
-        if self.friction > 0.0 {
-            rest -= if kinds & FRICTION != 0 { bounded(rest, self.friction) } else { beside(0.0, self.friction) };
-        }
-        steady + if kinds & SERVO != 0 { bounded(rest, self.servo) } else { 0.0 }
+    /// Torque of the law on a segment.
+    pub(super) fn on_segment(&self, j: usize, speed: f64) -> f64 {
+        self.segments[j].at(speed)
     }
-}
 
-/// A magnitude from a command, or the axis' own where it is not given.
-fn given(command: f64, own: f64) -> f64 {
-    if command.is_nan() { own } else { command.abs() }
+    /// Torque of the drive at this speed (J-15): on a segment, or on riser `k` where `total` is the torque of the whole law.
+    /// On a riser friction takes its part first, then the drive; what is left is the stop's.
+    pub(super) fn drive_torque(&self, speed: f64, riser: Option<(usize, f64)>) -> f64 {
+        let beside = if speed > 0.0 { -self.friction } else { self.friction };
+        match riser {
+            Some((k, total)) if self.knots[k].kinds & SERVO != 0 => {
+                let rest = total + self.damping * speed;
+                let held = self.friction + self.stiction;
+                let friction = if self.knots[k].kinds & FRICTION != 0 { bounded(rest, held) } else { beside };
+                let (low, high) = self.drive.range(speed);
+                (rest - friction).max(low).min(high)
+            }
+            _ => self.drive.torque(speed),
+        }
+    }
 }
 
 /// `x` within ±`bound`; unlike `clamp` it cannot panic.
-fn bounded(x: f64, bound: f64) -> f64 {
+pub(super) fn bounded(x: f64, bound: f64) -> f64 {
     x.min(bound).max(-bound)
 }

@@ -1,21 +1,24 @@
 //! What acts on an axis besides the smooth dynamics: damping, dry friction, stops, drives.
 //!
-//! Everything stiff is implicit. The laws of one axis are a monotone staircase of torque over the velocity at the end of
-//! the step ([`law`]); all axes together are solved as a set ([`AxisSet`]) with the hybrid dynamics.
+//! Everything stiff is implicit. The laws of one axis are a monotone staircase of torque over its speed ([`law`]); all axes
+//! together are solved as a set ([`AxisSet`]) with the hybrid dynamics.
 
 mod axis_set;
 mod command;
 mod cone;
 mod couplings;
+mod drive;
 mod finish;
 mod gauss_seidel;
+mod inputs;
 mod law;
 mod rows;
 mod smooth;
 
-pub use axis_set::{AxisSet, Outcome, StateRef};
+pub use axis_set::{AxisSet, Outcome, StateRef, StepStart, Work};
 pub use command::{AxisCommand, Mode};
 pub use cone::{ConeBlock, Plane, disc};
 pub use couplings::Stage as CouplingStage;
-pub use law::{AxisInput, Law, SERVO_TIME, STOP_ERP, law};
+pub use drive::Brakes;
+pub use law::{AxisInput, Law, law};
 pub use rows::{FINISH_ROWS, Kind, Row, Rows, Solved};

@@ -1,27 +1,35 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
+mod drive;
 mod settings;
 mod snapshot;
 
 use crate::dynamics::{Energy, Kinematics, Momentum, energy, kinematics, link_pose, link_twist, momentum};
 use crate::engine::{Rbx, State, StepSettings};
 use crate::math::{Pose, Twist};
-use crate::model::Model;
+use crate::model::{Effects, Model};
 use std::sync::Arc;
 
-pub use crate::solver::{AxisCommand, Mode};
+pub use crate::solver::{AxisCommand, Mode, Work};
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
 
 /// Counters since the start; none of them is ever reset by a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
     /// Steps made.
     pub steps: u64,
-    /// RK4 steps that fell back to semi-implicit Euler.
+    /// RK4 steps that fell back to the implicit midpoint rule.
     pub fallback_steps: u64,
     /// Steps whose axis set did not settle within the iterations.
     pub unsettled_steps: u64,
+    /// How often a step was halved because its iteration did not contract: velocity products of light limbs that whirl.
+    pub halvings: u64,
+    /// Pieces of steps that even the shortest piece did not resolve: their motion was slowed down to the energy that drives and
+    /// weight had paid for.
+    pub guarded_pieces: u64,
+    /// What they lost, J.
+    pub guarded_energy: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
     pub pole_steps: u64,
     /// Steps whose result was not finite and was not taken. The world stands still from the first one on.
@@ -34,6 +42,7 @@ pub struct World {
     model: Arc<Model>,
     settings: Settings,
     engine: Rbx,
+    effects: Effects,
     initial: State,
     commands: Vec<AxisCommand>,
     kinematics: Kinematics,
@@ -54,6 +63,7 @@ impl World {
         let mut engine = Rbx::new(&model);
         engine.prepare(&model, settings.integrator);
         let mut world = Self {
+            effects: model.effects,
             initial: engine.state.clone(),
             engine,
             commands: vec![AxisCommand::IDLE; model.axes.len()],
@@ -156,6 +166,7 @@ impl World {
         StepSettings {
             h: interval / f64::from(s.steps_per_interval),
             gravity: self.gravity(),
+            effects: self.effects,
             passes: s.solver_iterations,
             integrator: s.integrator,
         }
@@ -167,19 +178,21 @@ impl World {
         s.steps += 1;
         s.fallback_steps += u64::from(report.fell_back);
         s.unsettled_steps += u64::from(report.unsettled);
+        s.halvings += u64::from(report.halvings);
+        s.guarded_pieces += u64::from(report.guarded);
+        s.guarded_energy += report.guarded_energy;
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
     }
 
     /// Gravity in force: zero if the effect is off.
     fn gravity(&self) -> [f64; 3] {
-        if self.model.effects.gravity { self.settings.gravity } else { [0.0; 3] }
+        if self.effects.gravity { self.settings.gravity } else { [0.0; 3] }
     }
 
     /// Back to the initial state and time 0; every axis in its mode at start.
     pub fn reset(&mut self) {
-        self.engine.state.copy_from(&self.initial);
-        self.engine.axes.reset();
+        self.engine.restart(&self.initial);
         for (i, axis) in self.model.axes.iter().enumerate() {
             self.commands[i] = match axis.mode {
                 Mode::Idle => AxisCommand::IDLE,
@@ -234,9 +247,22 @@ impl World {
         self.stamp_ns as f64 * 1e-9
     }
 
-    /// Kinetic and potential energy, J.
+    /// Kinetic and potential energy, J; rotors count with their speed relative to the joint.
     pub fn energy(&self) -> Energy {
-        energy(&self.model, &self.kinematics, self.gravity())
+        let mut e = energy(&self.model, &self.kinematics, self.gravity());
+        if self.effects.rotor_inertia {
+            for (i, drive) in self.engine.axes.drives.iter().enumerate() {
+                let (_, speed) = self.state().axis(&self.model, i);
+                e.kinetic += 0.5 * drive.rotor_inertia * speed * speed;
+            }
+        }
+        e
+    }
+
+    /// Work of the drives and losses at the axes since the start or the last reset, J. With [`World::energy`] it shows the
+    /// error of the integrator: what the energy has gained beyond `drives − losses`.
+    pub fn work(&self) -> Work {
+        self.engine.axes.work
     }
 
     /// Momentum in the world frame, about the common centre of mass.

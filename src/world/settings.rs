@@ -30,7 +30,7 @@ impl Default for Settings {
             solver_iterations: 10,
             time_scale: 1.0,
             gravity: [0.0, 0.0, -9.80665],
-            integrator: Integrator::SemiImplicitEuler,
+            integrator: Integrator::default(),
         }
     }
 }

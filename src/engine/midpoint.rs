@@ -1,0 +1,182 @@
+//! The implicit midpoint rule on the group of motions (Hairer, Lubich, Wanner: *Geometric Numerical Integration*, 2006,
+//! §II.1.4, V): accelerations at the mean of the velocities and half-way between the poses.
+//!
+//! The rule is solved by fixed-point iteration, together with the axis set: every pass takes the middle of the step from the
+//! accelerations of the pass before. That contracts while h · (speeds of the velocity products) is below 1; where it does
+//! not, as on light limbs that whirl, the step is halved, which is more work and not less accuracy.
+
+use super::guard::Guard;
+use super::rbx::{Rbx, State, StepReport, StepSettings};
+use crate::dynamics::move_coordinates;
+use crate::model::Model;
+use crate::solver::{AxisCommand, StepStart};
+
+/// The middle of the step may still move by this, relative to 1 rad/s or m/s and the speed, when the iteration ends; what
+/// is left after the last pass is smaller by the rate of contraction.
+const TOLERANCE: f64 = 1e-8;
+/// An iteration that shrinks by less than this factor per pass does not contract.
+const CONTRACTION: f64 = 0.5;
+/// When its passes are used up, a step whose middle moves by less than this is taken; one that had enough of them is halved.
+const COARSE: f64 = 1e-6;
+const ENOUGH: u32 = 5;
+/// A step is halved at most this many times.
+const DEEPEST: u32 = 6;
+
+/// Buffers of the rule.
+#[derive(Clone, Debug)]
+pub(super) struct Midpoint {
+    /// State at the start of the (maybe halved) step.
+    pub start: State,
+    /// Half-way.
+    middle: State,
+    /// Speeds with which the coordinates move.
+    u: Vec<f64>,
+    /// Accelerations of the last step, the first guess for the next one.
+    guess: Vec<f64>,
+    pub guard: Guard,
+}
+
+impl Midpoint {
+    pub fn new(m: &Model) -> Self {
+        let state = State::initial(m);
+        Self { middle: state.clone(), start: state, u: vec![0.0; m.nv], guess: vec![0.0; m.nv], guard: Guard::new(m) }
+    }
+
+    pub fn forget(&mut self) {
+        self.guess.fill(0.0);
+    }
+}
+
+/// How the iteration of one step ended.
+enum End {
+    Converged,
+    /// Out of passes, or some axis does not fit its law.
+    Unsettled,
+    NoContraction,
+}
+
+impl Rbx {
+    /// One step of `s.h`, in halves, quarters … where the iteration does not contract.
+    pub(super) fn midpoint_step(
+        &mut self,
+        m: &Model,
+        mid: &mut Midpoint,
+        commands: &[AxisCommand],
+        s: &StepSettings,
+        report: &mut StepReport,
+    ) {
+        let pieces = 1u32 << DEEPEST;
+        let (mut done, mut depth) = (0, 0);
+        while done < pieces {
+            let piece = pieces >> depth;
+            let part = StepSettings { h: s.h * f64::from(piece) / f64::from(pieces), ..*s };
+            mid.start.copy_from(&self.state);
+            match self.iterate(m, mid, commands, &part, report) {
+                End::NoContraction if depth < DEEPEST => {
+                    self.state.copy_from(&mid.start);
+                    mid.forget();
+                    depth += 1;
+                    report.halvings += 1;
+                    continue;
+                }
+                End::Converged => self.take(m, mid, part.h),
+                End::Unsettled => {
+                    report.unsettled = true;
+                    self.take(m, mid, part.h);
+                    self.guard(m, mid, part.gravity, report);
+                }
+                End::NoContraction => {
+                    report.unsettled = true;
+                    self.explicit_piece(m, mid, &part);
+                    self.guard(m, mid, part.gravity, report);
+                }
+            }
+            done += piece;
+            // Back to longer pieces where they fit.
+            while depth > 0 && done % (pieces >> (depth - 1)) == 0 {
+                depth -= 1;
+            }
+        }
+    }
+
+    fn iterate(
+        &mut self,
+        m: &Model,
+        mid: &mut Midpoint,
+        commands: &[AxisCommand],
+        s: &StepSettings,
+        report: &mut StepReport,
+    ) -> End {
+        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, mean: true };
+        report.at_pole |= self.axes.prepare(m, &start, s.effects);
+        self.qdd.copy_from_slice(&mid.guess);
+        self.set_middle(m, mid, s.h);
+        let (mut pass, mut last) = (0, f64::INFINITY);
+        loop {
+            pass += 1;
+            let wanted = pass < s.passes;
+            let at = (mid.middle.as_ref(), &mid.start.v[..]);
+            let misfits = self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, wanted));
+            let moved = self.set_middle(m, mid, s.h);
+            if misfits == 0 && moved <= TOLERANCE {
+                return End::Converged;
+            }
+            if !moved.is_finite() || (misfits == 0 && pass > 2 && moved > CONTRACTION * last) {
+                return End::NoContraction;
+            }
+            if !wanted {
+                return match misfits {
+                    0 if moved <= COARSE => End::Converged,
+                    _ if moved > COARSE && pass >= ENOUGH => End::NoContraction,
+                    _ => End::Unsettled,
+                };
+            }
+            last = if misfits == 0 { moved } else { f64::INFINITY };
+        }
+    }
+
+    /// The last resort: accelerations of the start of the piece.
+    fn explicit_piece(&mut self, m: &Model, mid: &mut Midpoint, s: &StepSettings) {
+        let at = (mid.start.as_ref(), &mid.start.v[..]);
+        self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, false));
+        self.take(m, mid, s.h);
+        mid.forget();
+    }
+
+    /// Takes the middle of the step from the accelerations; returns by how much its velocities have moved.
+    fn set_middle(&mut self, m: &Model, mid: &mut Midpoint, h: f64) -> f64 {
+        let (mut moved, mut finite) = (0.0_f64, true);
+        for k in 0..m.nv {
+            let (v0, change) = (mid.start.v[k], h * self.qdd[k]);
+            let v = v0 + 0.5 * change;
+            let step = (v - mid.middle.v[k]).abs() / (1.0 + v.abs());
+            (moved, finite) = (moved.max(step), finite && step.is_finite());
+            mid.middle.v[k] = v;
+            mid.u[k] = v0 + self.axes.weight[k] * change;
+        }
+        move_coordinates(m, &mid.start.q, &mid.u, 0.5 * h, &mut mid.middle.q);
+        if !m.eulers.is_empty() {
+            mid.middle.angles.copy_from_slice(&mid.start.angles);
+            mid.middle.read_angles(m);
+        }
+        if finite { moved } else { f64::INFINITY }
+    }
+
+    /// Takes the step with the accelerations of the last pass.
+    fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
+        self.axes.finish(m, &self.ws, h, &self.qdd);
+        for k in 0..m.nv {
+            let change = h * self.qdd[k];
+            self.state.v[k] = mid.start.v[k] + change;
+            mid.u[k] = mid.start.v[k] + self.axes.weight[k] * change;
+        }
+        self.axes.round_speeds(m, &mut self.state.v);
+        move_coordinates(m, &mid.start.q, &mid.u, h, &mut self.state.q);
+        self.state.read_angles(m);
+        if self.axes.is_calm() {
+            mid.guess.copy_from_slice(&self.qdd);
+        } else {
+            mid.forget();
+        }
+    }
+}
