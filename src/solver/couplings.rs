@@ -3,7 +3,6 @@
 //! followers, without a law that knows of the other.
 
 use super::axis_set::{AxisSet, StateRef, StepStart};
-use super::law::{LOWER, UPPER};
 use super::rows::{Kind, Rows};
 use crate::dynamics::{Push, Response, Workspace};
 use crate::model::{AxisSlot, Coupling, Model};
@@ -41,8 +40,8 @@ pub struct Couplings {
 
 /// One coupling, and what the present pass found of it.
 #[derive(Clone, Copy, Debug)]
-struct Pair {
-    coupling: Coupling,
+pub(super) struct Pair {
+    pub coupling: Coupling,
     follower: Seat,
     leader: Seat,
     pushes: [Push; 2],
@@ -50,9 +49,9 @@ struct Pair {
     /// by, so that a deviation goes.
     back: f64,
     /// Velocity of the follower against its leader's without the row, minus the one wanted.
-    bias: f64,
+    pub bias: f64,
     /// How large that is as rounding.
-    slack: f64,
+    pub slack: f64,
 }
 
 /// How a step asks for the couplings.
@@ -357,46 +356,5 @@ impl AxisSet {
             push.own[seat.index] = factor;
         }
         push
-    }
-
-    /// Follower and leader are both locked, to speeds that do not agree. The force between them grows until the first of
-    /// them leaves its riser: that force is returned. A drive that nothing bounds yields to the other by its speed instead,
-    /// the follower's before the leader's; stops do not yield.
-    fn break_loose(&mut self, m: &Model, ws: &Workspace<f64>, pair: &Pair, qdd: &[f64]) -> f64 {
-        let c = pair.coupling;
-        let sense = -pair.bias.signum();
-        let forces =
-            [(c.follower, 1.0), (c.leader, -c.ratio)].map(|(axis, factor)| self.room(m, ws, axis, factor * sense, qdd));
-        let force = forces[0].min(forces[1]);
-        if force.is_finite() {
-            return sense * force;
-        }
-        let [follower, leader] = [c.follower, c.leader].map(|axis| self.yielding_riser(axis));
-        if let Some(riser) = follower {
-            self.laws[c.follower].knots[riser].speed -= pair.bias;
-        } else if let Some(riser) = leader.filter(|_| c.ratio != 0.0) {
-            self.laws[c.leader].knots[riser].speed += pair.bias / c.ratio;
-        }
-        0.0
-    }
-
-    /// The force between a locked axis and its partner at which the axis leaves its riser; `factor` is the torque on it per
-    /// force. Infinite if nothing bounds it, or if it is not locked.
-    fn room(&self, m: &Model, ws: &Workspace<f64>, axis: usize, factor: f64, qdd: &[f64]) -> f64 {
-        let (law, place) = (&self.laws[axis], self.place[axis]);
-        if place.is_multiple_of(2) || factor == 0.0 {
-            return f64::INFINITY;
-        }
-        let torque = self.riser_torque(m, ws, axis, qdd);
-        let left = law.room(place / 2, torque, factor > 0.0);
-        // A little beyond, so that the law sees it.
-        (left.max(0.0) + 1e-6 * (1.0 + torque.abs())) / factor.abs()
-    }
-
-    /// The riser an axis stands on, if a drive without bound holds it there.
-    fn yielding_riser(&self, axis: usize) -> Option<usize> {
-        let (law, place) = (&self.laws[axis], self.place[axis]);
-        let kinds = if place.is_multiple_of(2) { LOWER } else { law.knots[place / 2].kinds };
-        (kinds & (LOWER | UPPER) == 0).then_some(place / 2)
     }
 }

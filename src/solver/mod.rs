@@ -14,6 +14,7 @@ mod inputs;
 mod law;
 mod rows;
 mod smooth;
+mod yielding;
 
 pub use axis_set::{AxisSet, Outcome, StateRef, StepStart, Work};
 pub use command::{AxisCommand, Mode};

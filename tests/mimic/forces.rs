@@ -1,6 +1,6 @@
 //! Drives, stops and friction across a coupling.
 
-use super::scene::{Part, advance, axis, deviation, effort, model, settings, world};
+use super::scene::{ALL_INTEGRATORS, IMPLICIT, Part, advance, axis, deviation, effort, model, settings, world};
 use realnoid::world::{AxisCommand, Integrator, World};
 
 const NO_GRAVITY: [f64; 3] = [0.0; 3];
@@ -20,7 +20,7 @@ const WIDE: &str = "<limit lower='0' upper='0.05' effort='20' velocity='0.1'/>";
 #[test]
 fn a_gripper_closes_under_its_servo() {
     let follower = format!("{WIDE}<mimic joint='left'/>");
-    for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+    for integrator in ALL_INTEGRATORS {
         let m = model(&gripper(WIDE, &follower));
         let mut w = world(&m, settings(integrator, 0.001, GRAVITY), &[]);
         w.set_commands(&[AxisCommand::servo(0.03), AxisCommand::IDLE]).unwrap();
@@ -37,6 +37,10 @@ fn a_gripper_closes_under_its_servo() {
 /// servo that nothing bounds. The drive gives what it can, or nothing beyond what the stop asks for.
 #[test]
 fn the_followers_stop_holds_the_leader() {
+    IMPLICIT.into_iter().for_each(the_followers_stop_holds_the_leader_by);
+}
+
+fn the_followers_stop_holds_the_leader_by(integrator: Integrator) {
     let short = "<limit lower='0' upper='0.02' effort='20' velocity='0.1'/><mimic joint='left'/>";
     let unbounded = "<limit lower='0' upper='0.05' effort='0' velocity='0'/>";
     for (leader, command, gives) in [
@@ -45,7 +49,7 @@ fn the_followers_stop_holds_the_leader() {
         (unbounded, AxisCommand::servo(0.04), None),
     ] {
         let m = model(&gripper(leader, short));
-        let mut w = world(&m, settings(Integrator::SemiImplicitEuler, 0.001, GRAVITY), &[]);
+        let mut w = world(&m, settings(integrator, 0.001, GRAVITY), &[]);
         w.set_commands(&[command, AxisCommand::IDLE]).unwrap();
         advance(&mut w, 2000);
         for name in ["left", "right"] {
@@ -78,7 +82,7 @@ fn the_leaders_drive_carries_the_follower() {
             ..Part::default()
         },
     ]);
-    for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+    for integrator in ALL_INTEGRATORS {
         let mut w = world(&m, settings(integrator, 0.001, GRAVITY), &[]);
         w.set_commands(&[AxisCommand::servo(0.0), AxisCommand::IDLE]).unwrap();
         advance(&mut w, 1000);
@@ -93,13 +97,17 @@ fn the_leaders_drive_carries_the_follower() {
 /// is left.
 #[test]
 fn the_followers_friction_holds_the_leader() {
+    IMPLICIT.into_iter().for_each(the_followers_friction_holds_the_leader_by);
+}
+
+fn the_followers_friction_holds_the_leader_by(integrator: Integrator) {
     let rub = "<dynamics damping='0' friction='0.5'/><mimic joint='a' multiplier='-3'/>";
     let m = model(&[
         Part { name: "a", inertia: 0.2, ..Part::default() },
         Part { name: "b", inertia: 0.1, inner: rub, ..Part::default() },
     ]);
     for (torque, moves) in [(1.499, false), (1.501, true)] {
-        let mut w = world(&m, settings(Integrator::SemiImplicitEuler, 0.001, NO_GRAVITY), &[]);
+        let mut w = world(&m, settings(integrator, 0.001, NO_GRAVITY), &[]);
         w.set_commands(&[AxisCommand::torque(torque), AxisCommand::IDLE]).unwrap();
         advance(&mut w, 1000);
         let (q, v) = axis(&w, "a");
@@ -114,6 +122,10 @@ fn the_followers_friction_holds_the_leader() {
 /// Both stand on their own: the follower rubs, the leader's servo is stronger; then it is weaker.
 #[test]
 fn a_servo_against_the_followers_friction() {
+    IMPLICIT.into_iter().for_each(a_servo_against_the_followers_friction_by);
+}
+
+fn a_servo_against_the_followers_friction_by(integrator: Integrator) {
     for (bound, arrives) in [("4", true), ("2", false)] {
         let limit = format!("<limit lower='-2' upper='2' effort='{bound}' velocity='3'/>");
         let rub = "<limit lower='-6' upper='6' effort='9' velocity='9'/><dynamics damping='0' friction='1'/>\
@@ -122,7 +134,7 @@ fn a_servo_against_the_followers_friction() {
             Part { name: "a", kind: "revolute", inner: &limit, ..Part::default() },
             Part { name: "b", kind: "revolute", inner: rub, ..Part::default() },
         ]);
-        let mut w = world(&m, settings(Integrator::SemiImplicitEuler, 0.001, NO_GRAVITY), &[]);
+        let mut w = world(&m, settings(integrator, 0.001, NO_GRAVITY), &[]);
         w.set_commands(&[AxisCommand::servo(1.0), AxisCommand::IDLE]).unwrap();
         advance(&mut w, 8000);
         let (q, v) = axis(&w, "a");
@@ -138,13 +150,17 @@ fn a_servo_against_the_followers_friction() {
 /// Drives of the follower and the leader that pull apart: the stronger wins; two without bound: the leader's.
 #[test]
 fn two_drives_on_one_degree_of_freedom() {
+    IMPLICIT.into_iter().for_each(two_drives_on_one_degree_of_freedom_by);
+}
+
+fn two_drives_on_one_degree_of_freedom_by(integrator: Integrator) {
     let both = "<limit lower='-3' upper='3' effort='0' velocity='2'/>";
     let follower = format!("{both}<mimic joint='a'/>");
     let m = model(&[
         Part { name: "a", kind: "revolute", inner: both, ..Part::default() },
         Part { name: "b", kind: "revolute", inner: &follower, ..Part::default() },
     ]);
-    let mut w = world(&m, settings(Integrator::SemiImplicitEuler, 0.001, NO_GRAVITY), &[]);
+    let mut w = world(&m, settings(integrator, 0.001, NO_GRAVITY), &[]);
     w.set_commands(&[AxisCommand::servo(0.5), AxisCommand::servo(-0.5)]).unwrap();
     advance(&mut w, 3000);
     assert!((axis(&w, "a").0 - 0.5).abs() <= 1e-9 && (axis(&w, "b").0 - 0.5).abs() <= 1e-9);
@@ -154,6 +170,10 @@ fn two_drives_on_one_degree_of_freedom() {
 /// A follower that its leader does not move, or whose leader is fixed, stands where it belongs, whatever pulls.
 #[test]
 fn a_follower_of_nothing_stands() {
+    IMPLICIT.into_iter().for_each(a_follower_of_nothing_stands_by);
+}
+
+fn a_follower_of_nothing_stands_by(integrator: Integrator) {
     let m = model(&[
         Part { name: "a", kind: "fixed", ..Part::default() },
         Part {
@@ -164,7 +184,7 @@ fn a_follower_of_nothing_stands() {
             ..Part::default()
         },
     ]);
-    let mut w = world(&m, settings(Integrator::SemiImplicitEuler, 0.001, GRAVITY), &[]);
+    let mut w = world(&m, settings(integrator, 0.001, GRAVITY), &[]);
     assert_eq!(axis(&w, "b"), (0.4, 0.0));
     w.set_commands(&[AxisCommand::torque(7.0)]).unwrap();
     advance(&mut w, 1000);
@@ -174,13 +194,17 @@ fn a_follower_of_nothing_stands() {
 /// Stops that contradict each other cannot be satisfied: that is counted, and everything stays finite.
 #[test]
 fn contradicting_stops_are_counted() {
+    IMPLICIT.into_iter().for_each(contradicting_stops_are_counted_by);
+}
+
+fn contradicting_stops_are_counted_by(integrator: Integrator) {
     let leader = "<limit lower='0' upper='0.05' effort='20' velocity='0.1'/>";
     let follower = "<limit lower='0' upper='0.05' effort='20' velocity='0.1'/><mimic joint='left'/>";
     let m = model(&gripper(leader, follower));
     let mut m = (*m).clone();
     (m.axes[1].lower, m.axes[1].upper) = (0.1, 0.2);
     let m = std::sync::Arc::new(m);
-    let mut w = World::new(m, settings(Integrator::SemiImplicitEuler, 0.001, GRAVITY)).unwrap();
+    let mut w = World::new(m, settings(integrator, 0.001, GRAVITY)).unwrap();
     advance(&mut w, 1000);
     assert!(w.stats().unsettled_steps > 900 && w.stats().diverged_steps == 0, "{:?}", w.stats());
     assert!(axis(&w, "left").0.abs() < 1.0 && axis(&w, "right").0.abs() < 1.0);

@@ -1,6 +1,6 @@
 //! Coupled axes in motion: closed forms, energy, drift, extremes.
 
-use super::scene::{Part, advance, axis, deviation, model, model_on, settings, text, world};
+use super::scene::{ALL_INTEGRATORS, IMPLICIT, Part, advance, axis, deviation, model, model_on, settings, text, world};
 use super::support::{ALL, Random, state, tree};
 use realnoid::engine::State;
 use realnoid::math::Vec3;
@@ -21,11 +21,11 @@ fn geared(first: f64, second: f64) -> Vec<Part<'static>> {
 }
 
 /// Two hinges coupled 1 : −2 under a torque are one of the inertia I₁ + 4 I₂, to rounding: the torque is constant, so semi-
-/// implicit Euler has the exact speed and RK4 the exact position. Also when one side is a million times the other.
+/// implicit Euler has the exact speed, the others the exact position as well. Also when one side is a million times the other.
 #[test]
 fn coupled_hinges_are_one() {
     for (first, second) in [(0.3, 0.05), (1e-3, 1e3), (1e3, 1e-3)] {
-        for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+        for integrator in ALL_INTEGRATORS {
             let m = model(&geared(first, second));
             let mut w = world(&m, settings(integrator, 0.001, NO_GRAVITY), &[("a", 0.2, 0.7)]);
             assert_eq!(axis(&w, "b"), (-0.4, -1.4));
@@ -34,7 +34,7 @@ fn coupled_hinges_are_one() {
             advance(&mut w, 1000);
             let ((qa, va), (qb, vb)) = (axis(&w, "a"), axis(&w, "b"));
             assert!((va - 3.7).abs() <= 1e-11 && (vb + 7.4).abs() <= 1e-11, "{first} {second}: {va} {vb}");
-            let position = 0.2 + 0.7 + 1.5 + if integrator == Integrator::Rk4 { 0.0 } else { 0.0015 };
+            let position = 0.2 + 0.7 + 1.5 + if integrator == Integrator::SemiImplicitEuler { 0.0015 } else { 0.0 };
             assert!((qa - position).abs() <= 1e-11 && (qb + 2.0 * qa).abs() <= 1e-11, "{first} {second}: {qa} {qb}");
             assert_eq!((w.stats().unsettled_steps, w.stats().fallback_steps), (0, 0));
         }
@@ -86,6 +86,12 @@ fn energy_and_coupling_are_kept_to_the_order() {
         assert!((pair[0].0 / pair[1].0).log2() > 0.8, "{errors:?}");
     }
     assert!(errors.iter().all(|e| e.1 <= 1e-12), "{errors:?}");
+    let errors = [0.002, 0.001, 0.0005].map(|h| drift(Integrator::ImplicitMidpoint, h));
+    println!("midpoint {errors:?}");
+    for pair in errors.windows(2) {
+        assert!((pair[0].0 / pair[1].0).log2() > 1.8, "{errors:?}");
+    }
+    assert!(errors.iter().all(|e| e.1 <= 1e-12), "{errors:?}");
 }
 
 /// 10⁵ steps at rest under load, and in motion: the deviation stays at rounding, it does not add up.
@@ -102,7 +108,7 @@ fn nothing_drifts() {
         },
     ]);
     for (command, speed) in [(AxisCommand::servo(0.3), 0.0), (AxisCommand::IDLE, 3.0)] {
-        for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+        for integrator in ALL_INTEGRATORS {
             let mut w = world(&m, settings(integrator, 0.001, GRAVITY), &[("a", 0.3, speed)]);
             w.set_commands(&[command, AxisCommand::IDLE]).unwrap();
             advance(&mut w, 100_000);
@@ -120,7 +126,7 @@ fn nothing_drifts() {
 #[test]
 fn a_deviation_is_taken_back() {
     let m = model(&geared(0.3, 0.05));
-    for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+    for integrator in ALL_INTEGRATORS {
         let mut w = World::new(m.clone(), settings(integrator, 0.001, NO_GRAVITY)).unwrap();
         let mut s = State::initial(&m);
         s.set_axis(&m, 1, 0.01, 0.0);
@@ -190,7 +196,11 @@ fn axes_of_a_group_follow_and_lead() {
     };
     let euler = [0.002, 0.001, 0.0005].map(|h| run(Integrator::SemiImplicitEuler, h));
     let rk4 = [0.01, 0.005, 0.0025].map(|h| run(Integrator::Rk4, h));
-    println!("semi-implicit {euler:?}\nrk4 {rk4:?}");
+    let midpoint = [0.002, 0.001, 0.0005].map(|h| run(Integrator::ImplicitMidpoint, h));
+    println!("semi-implicit {euler:?}\nrk4 {rk4:?}\nmidpoint {midpoint:?}");
+    for pair in midpoint.windows(2) {
+        assert!((pair[0].0 / pair[1].0).log2() > 1.8 && (pair[0].1 / pair[1].1).log2() > 1.7, "{midpoint:?}");
+    }
     for pair in euler.windows(2) {
         assert!((pair[0].0 / pair[1].0).log2() > 1.7, "curvature per step: {euler:?}");
     }
@@ -204,6 +214,10 @@ fn axes_of_a_group_follow_and_lead() {
 /// the couplings hold as far as rounding goes.
 #[test]
 fn random_couplings_stay_finite() {
+    IMPLICIT.into_iter().for_each(random_couplings_stay_finite_by);
+}
+
+fn random_couplings_stay_finite_by(integrator: Integrator) {
     for seed in 0..40u64 {
         let mut rng = Random(seed + 70);
         let joints: Vec<JointType> = (0..10).map(|i| ALL[(i + seed as usize) % 5]).collect();
@@ -225,7 +239,7 @@ fn random_couplings_stay_finite() {
         (m.axes[leader].lower, m.axes[leader].upper) = (-1.0, 1.0);
         m.effects = Effects::called_for(&m);
         let m = Arc::new(m);
-        let mut w = World::new(m.clone(), settings(Integrator::SemiImplicitEuler, 0.001, GRAVITY)).unwrap();
+        let mut w = World::new(m.clone(), settings(integrator, 0.001, GRAVITY)).unwrap();
         let (q, v) = state(&m, &mut rng, 0.3);
         let mut s = State { q, v, angles: vec![] };
         s.set_axis(&m, leader, 0.3, 0.1);
@@ -249,6 +263,10 @@ fn random_couplings_stay_finite() {
 /// Nearly every step settles, and the couplings hold to rounding.
 #[test]
 fn drives_stops_and_couplings_settle() {
+    IMPLICIT.into_iter().for_each(drives_stops_and_couplings_settle_by);
+}
+
+fn drives_stops_and_couplings_settle_by(integrator: Integrator) {
     let (mut steps, mut unsettled) = (0, 0);
     for seed in 0..60u64 {
         let mut rng = Random(seed + 900);
@@ -272,7 +290,7 @@ fn drives_stops_and_couplings_settle() {
             .collect();
         m.effects = Effects::called_for(&m);
         let m = Arc::new(m);
-        let mut w = World::new(m.clone(), settings(Integrator::SemiImplicitEuler, 0.005, GRAVITY)).unwrap();
+        let mut w = World::new(m.clone(), settings(integrator, 0.005, GRAVITY)).unwrap();
         for step in 0..2000 {
             if step % 200 == 0 {
                 let command = |i: usize, rng: &mut Random| match (i % 2, rng.next() % 3) {

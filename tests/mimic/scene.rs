@@ -8,6 +8,10 @@ use realnoid::world::{Integrator, Settings, World};
 use std::io::Write;
 use std::sync::Arc;
 
+pub const IMPLICIT: [Integrator; 2] = [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler];
+pub const ALL_INTEGRATORS: [Integrator; 3] =
+    [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler, Integrator::Rk4];
+
 /// A joint of a test robot: the link it carries is named as the joint, with `_link`.
 pub struct Part<'a> {
     pub name: &'a str,
