@@ -109,3 +109,42 @@ fn soft_and_breakable_joints_allocate_only_when_they_break() {
         assert_eq!(snapshot.broken, world.broken());
     }
 }
+
+/// Couplings too: followers with friction and a stop that their leader's servo runs into, in both integrators.
+#[test]
+fn couplings_allocate_nothing() {
+    let joint = |name: &str, inner: &str| {
+        let inertia = "<inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/>";
+        format!(
+            "<link name='{name}_link'><inertial><origin xyz='0.1 0 0' rpy='0 0 0'/><mass value='1'/>{inertia}</inertial></link>\
+             <joint name='{name}' type='revolute'><parent link='base'/><child link='{name}_link'/><axis xyz='0 1 0'/>{inner}</joint>"
+        )
+    };
+    let limit = |bound: f64| format!("<limit lower='-{bound}' upper='{bound}' effort='30' velocity='5'/>");
+    let rub = "<dynamics damping='0.1' friction='0.2'/>";
+    let text = format!(
+        "<robot name='r'><link name='base'/>{}{}{}</robot>",
+        joint("a", &limit(1.0)),
+        joint("b", &(limit(0.5) + rub + "<mimic joint='a'/>")),
+        joint("c", &(limit(3.0) + rub + "<mimic joint='b' multiplier='-2'/>")),
+    );
+    let mut file = tempfile::Builder::new().suffix(".urdf").tempfile().unwrap();
+    std::io::Write::write_all(&mut file, text.as_bytes()).unwrap();
+    let model =
+        load(Source { urdf: Some(file.path()), packages: &[] }, Base::Fixed).unwrap_or_else(|e| panic!("{e}")).model;
+    assert_eq!(model.couplings.len(), 2);
+    for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+        let settings = Settings { integrator, steps_per_interval: 1, ..Settings::default() };
+        let mut world = World::new(model.clone(), settings).unwrap();
+        let mut commands = world.commands().to_vec();
+        let n = counted(|| {
+            for step in 0..1000 {
+                commands[0] = AxisCommand::servo(if step < 500 { 0.9 } else { -0.3 });
+                world.set_commands(&commands).unwrap();
+                world.advance();
+            }
+            world.reset();
+        });
+        assert_eq!(n, 0, "{integrator:?}");
+    }
+}

@@ -63,6 +63,7 @@ broken_files! {
     joint_in_two_groups: "joint-in-two-groups",
     lower_above_upper: "lower-above-upper",
     massless_leaf: "massless-leaf",
+    mimic_cycle: "mimic-cycle",
     misplaced_tag: "unknown-tag",
     missing_velocity: "missing-bound",
     nan: "not-finite",
@@ -147,10 +148,13 @@ fn a_revolute_joint_without_limit_is_unlimited() {
 
 #[test]
 fn mimic_is_read_and_told() {
-    let text = robot("", r#"<mimic joint="hip" multiplier="-2" offset="0.5"/>"#, "");
-    let mimic = sound(&text).joints.remove(0).mimic.unwrap();
+    let knee = r#"<joint name="knee" type="continuous"><parent link="thigh"/><child link="shin"/><axis xyz="0 1 0"/>
+        <mimic joint="hip" multiplier="-2" offset="0.5"/></joint>"#;
+    let text = robot("", "", &format!(r#"<link name="shin">{INERTIAL}</link>{knee}"#));
+    let mimic = sound(&text).joints.remove(1).mimic.unwrap();
     assert_eq!((mimic.joint.as_str(), mimic.multiplier, mimic.offset), ("hip", -2.0, 0.5));
-    assert_eq!(codes(&text), ["mimic-not-simulated"]);
+    assert_eq!(codes(&text), [""; 0]);
+    assert_eq!(codes(&text.replace(r#"<mimic joint="hip""#, r#"<mimic joint="knee""#)), ["mimic-cycle"]);
 }
 
 #[test]

@@ -329,6 +329,7 @@ fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, St
         let t: [f64; 6] = numbers("--base-twist", "WX,WY,WZ,VX,VY,VZ", text)?;
         s.set_base_twist(m, Vec3::new(t[0], t[1], t[2]), Vec3::new(t[3], t[4], t[5]));
     }
+    let mut given = vec![];
     for text in &args.set {
         let form = "AXIS=POSITION[,VELOCITY]";
         let (name, values) = assignment("--set", form, text)?;
@@ -338,7 +339,9 @@ fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, St
             [position, speed] => s.set_axis(m, axis, position, speed),
             _ => return Err(format!("--set {text}: must be {form}")),
         }
+        given.push(axis);
     }
+    s.couple_given(m, &given).map_err(|reason| format!("--set: {reason}"))?;
     Ok(s)
 }
 

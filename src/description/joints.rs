@@ -211,8 +211,5 @@ fn read_mimic(element: &Element, report: &mut Report) -> Option<Mimic> {
         |name, default| report.lenient(|report| element.number(name, Domain::Any, report)).unwrap_or(default);
     let (multiplier, offset) = (number("multiplier", 1.0), number("offset", 0.0));
     let at = element.place(report).at;
-    let message = format!("<mimic> is read but not simulated yet: the joint moves by itself, not with '{joint}'");
-    let mend = "a servo command can make it follow";
-    report.add_once("", Finding::warning("mimic-not-simulated", element.place(report), message, mend));
     Some(Mimic { at, joint, multiplier, offset })
 }

@@ -289,7 +289,8 @@ fn outward<T: Real, const HYBRID: bool>(
         JointType::Spherical => {
             let out = ws.balls[b.ball].acceleration(Spatial { a, l });
             if HYBRID {
-                ws.ball_in[b.ball].react(&ws.balls[b.ball], Spatial { a, l });
+                ws.balls[b.ball].set_load(Spatial { a, l });
+                ws.ball_in[b.ball].react(&ws.balls[b.ball]);
             }
             (qdd[b.v], qdd[b.v + 1], qdd[b.v + 2]) = (out.x, out.y, out.z);
             a += out;

@@ -39,7 +39,9 @@ pub(crate) struct Ball<T> {
     /// Torque that is left over: τ − n.
     left: V3<T>,
     /// `D⁻¹`.
-    inverse: S3<T>,
+    pub(crate) inverse: S3<T>,
+    /// Torque that is left over for locks and acceleration, `τ − n − Uᵀ a`; written by the hybrid dynamics.
+    load: V3<T>,
 }
 
 impl<T: Real> Ball<T> {
@@ -52,6 +54,38 @@ impl<T: Real> Ball<T> {
     /// `gᵀ D⁻¹ g`.
     pub fn mobility(&self, gradient: V3<T>) -> T {
         gradient.dot(self.inverse.mv(gradient))
+    }
+
+    /// Takes the acceleration of the frame it moves against into account.
+    #[inline(always)]
+    pub fn set_load(&mut self, a: Spatial<T>) {
+        self.load = self.left - self.reach(a);
+    }
+
+    /// `P t` of a torque on the joint, and what of that torque the joint's motion carries: `U P t`.
+    #[inline(always)]
+    pub fn yielding(&self, t: V3<T>) -> (V3<T>, Spatial<T>) {
+        let x = self.p.mv(t);
+        (x, Spatial { a: self.ua.mv(x), l: self.ul.tv(x) })
+    }
+
+    /// `tᵀ D⁻¹ t`: what a torque would do if nothing were locked.
+    pub fn unlocked(&self, t: V3<T>) -> T {
+        t.dot(self.inverse.mv(t))
+    }
+
+    /// Takes a further torque into `x` and what is left over.
+    pub fn add(&mut self, t: V3<T>) {
+        self.left += t;
+        self.load += t;
+        self.x += self.p.mv(t);
+    }
+
+    /// The change of ω̇ when the frame it moves against accelerates by `a` more.
+    pub fn follow(&mut self, a: Spatial<T>) -> V3<T> {
+        let reach = self.reach(a);
+        self.load -= reach;
+        -self.p.mv(reach)
     }
 
     #[inline(always)]
@@ -70,7 +104,7 @@ pub(crate) fn eliminate_ball<T: Real>(k: &mut Acc<T>, out: &mut Ball<T>, input: 
     let left = input.tau - k.n;
     let (p, held) = project(&inverse, input);
     let x = p.mv(left) + held;
-    *out = Ball { ua, ul, p, x, left, inverse };
+    *out = Ball { ua, ul, p, x, left, inverse, load: left };
     subtract(k, &p);
     k.n += ua.mv(x);
     k.f += ul.tv(x);
@@ -125,9 +159,8 @@ impl<T: Real> BallIn<T> {
 
     /// Torques along the locked gradients: the λ of `D ω̇ = τ − n − Uᵀ a + G λ`, by backward substitution.
     #[inline(always)]
-    pub(crate) fn react(&mut self, ball: &Ball<T>, a: Spatial<T>) {
-        let load = ball.left - ball.reach(a);
-        let mut rest = ball.inverse.mv(load);
+    pub(crate) fn react(&mut self, ball: &Ball<T>) {
+        let mut rest = ball.inverse.mv(ball.load);
         let mut p = ball.inverse;
         let mut steps = [(V3::default(), T::of(0.0)); 3];
         for (n, lock) in self.lock[..self.locks].iter().enumerate() {

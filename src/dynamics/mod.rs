@@ -11,10 +11,13 @@ mod check;
 mod crba;
 mod eliminate;
 mod energy;
+mod factor;
 mod integrate;
 mod joint;
 mod joint_force;
 mod kinematics;
+mod layout;
+mod response;
 mod rnea;
 
 pub use aba::{Dof, Workspace, aba, aba_fused, aba_hybrid};
@@ -26,6 +29,8 @@ pub use integrate::{coordinate_rates, exponential_step, move_coordinates, normal
 pub use joint::joint_transform;
 pub use joint_force::JointForces;
 pub use kinematics::{Kinematics, body_pose, kinematics, link_pose, link_twist};
+pub use layout::{CHUNK, Layout};
+pub use response::{Mobility, Push, Response};
 pub use rnea::rnea;
 
 /// Inputs of one velocity coordinate to the hybrid dynamics: a free one gets a torque, a locked one an acceleration.

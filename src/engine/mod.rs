@@ -2,6 +2,7 @@
 
 mod apart;
 mod breaking;
+mod coupled;
 mod guard;
 mod honour;
 mod midpoint;

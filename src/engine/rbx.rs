@@ -54,7 +54,7 @@ pub struct State {
 }
 
 impl State {
-    /// All angles at 0, or at the stop next to it; at rest.
+    /// All angles at 0, or at the stop next to it; followers where their leaders put them; at rest.
     pub fn initial(m: &Model) -> Self {
         let mut s = Self { q: m.neutral(), v: vec![0.0; m.nv], angles: vec![[0.0; 3]; m.eulers.len()] };
         for axis in 0..m.axes.len() {
@@ -63,6 +63,7 @@ impl State {
                 s.set_axis(m, axis, a.lower.max(a.upper.min(0.0)), 0.0);
             }
         }
+        s.couple_in_range(m);
         s
     }
 

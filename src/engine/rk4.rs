@@ -3,6 +3,7 @@
 use super::rbx::{Rbx, StepSettings, normalize_all};
 use crate::dynamics::{aba_hybrid, coordinate_rates};
 use crate::model::Model;
+use crate::solver::CouplingStage;
 
 /// Buffers of the stages; made only when RK4 is chosen.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +33,9 @@ impl Rbx {
             }
             self.axes.write_smooth(m, &mut self.ws, self.state.as_ref());
             aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), s.gravity, &mut self.qdd);
-            if !self.axes.stage_fits(m, &self.ws, s.h, &self.qdd) {
+            let at = CouplingStage { h: s.h, first: stage == 0 };
+            let coupled = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), at, &mut self.qdd);
+            if !coupled || !self.axes.stage_fits(m, &self.ws, s.h, &self.qdd) {
                 return false;
             }
             coordinate_rates(m, &self.state.q, &self.state.v, &mut st.rates);

@@ -321,6 +321,7 @@ impl<'a> Builder<'a> {
             }
         }
         self.model.rigs = rigs(self.d, &self.model);
+        self.model.couplings = super::coupling::couplings(self.d, &self.model);
         self.model.effects = Effects::called_for(&self.model);
     }
 }

@@ -6,6 +6,7 @@
 mod build;
 mod chain;
 mod constraint;
+mod coupling;
 mod drive;
 mod effects;
 mod group;

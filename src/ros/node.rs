@@ -87,15 +87,17 @@ fn world(robot: &Robot, values: &Values) -> Result<(World, Vec<AxisCommand>), St
     Ok((world, commands))
 }
 
-/// Hold: every axis that may switch its mode servos where it is. Free: the modes of the drive tags.
+/// Hold: every axis that may switch its mode servos where it is; what follows another axis is held by that one. Free: the
+/// modes of the drive tags.
 fn initial_commands(model: &Model, positions: &[f64], hold: bool) -> Vec<AxisCommand> {
-    let command = |(axis, &position): (&crate::model::Axis, &f64)| match axis.mode {
-        _ if hold && axis.switchable => AxisCommand::servo(position),
+    let follows = |i: usize| model.couplings_in_force().iter().any(|c| c.follower == i);
+    let command = |(i, (axis, &position)): (usize, (&crate::model::Axis, &f64))| match axis.mode {
+        _ if hold && axis.switchable && !follows(i) => AxisCommand::servo(position),
         Mode::Servo => AxisCommand::servo(position),
         Mode::Torque => AxisCommand::torque(0.0),
         Mode::Idle => AxisCommand::IDLE,
     };
-    model.axes.iter().zip(positions).map(command).collect()
+    model.axes.iter().zip(positions).enumerate().map(command).collect()
 }
 
 fn spawn_control(control: ControlLoop, priority: i32, log: &Logger) -> Result<JoinHandle<()>, String> {

@@ -8,6 +8,7 @@
 //! A sliding axis moves with the mean of its speeds at the start and the end of the step, of second order. One that stands,
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
+use super::couplings::Couplings;
 use super::law::{FRICTION, Law, law};
 use super::{AxisCommand, AxisInput, Brakes};
 use crate::dynamics::{Workspace, aba_hybrid};
@@ -92,6 +93,8 @@ pub struct AxisSet {
     pub(super) mean: bool,
     best: usize,
     patience: u32,
+    /// Rows that hold followers to their leaders, if there are any.
+    pub(super) couplings: Option<Box<Couplings>>,
 }
 
 impl AxisSet {
@@ -113,6 +116,7 @@ impl AxisSet {
             rotor: vec![0.0; n],
             weight: vec![1.0; model.nv],
             effort: vec![0.0; n],
+            couplings: Couplings::new(model),
             work: Work::default(),
             paid: (0.0, 0.0),
             mean: false,
@@ -128,6 +132,9 @@ impl AxisSet {
         self.stiff.fill(false);
         self.brakes.fill(Brakes::default());
         self.work = Work::default();
+        if let Some(couplings) = &mut self.couplings {
+            couplings.reset();
+        }
     }
 
     /// Sets up the laws of a step and the first guess of each axis' place. True if a 3DOF group is at its pole.
@@ -151,6 +158,7 @@ impl AxisSet {
             self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }
         self.mean = start.mean;
+        self.start_couplings(m, start);
         self.set_weights(m);
         at_pole
     }
@@ -187,7 +195,8 @@ impl AxisSet {
         self.take_rates(m, at.angles, v0);
         self.write_inputs(m, ws, h);
         aba_hybrid(m, ws, (at.q, at.v), gravity, qdd);
-        let misfits = self.misfits(m, ws, (h, qdd));
+        let loose = self.couple(m, ws, at, h, qdd);
+        let misfits = self.misfits(m, ws, (h, qdd)) + loose;
         if misfits > 0 && wanted {
             if misfits < self.best {
                 (self.best, self.patience) = (misfits, PATIENCE);

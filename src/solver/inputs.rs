@@ -92,6 +92,7 @@ impl AxisSet {
 
     /// Velocity coordinates of axes that move with their speed at the end do so too; a group moves as one.
     pub(super) fn set_weights(&mut self, m: &Model) {
+        self.share_ends(m);
         self.weight.fill(if self.mean { 0.5 } else { 1.0 });
         if !self.mean {
             return;

@@ -197,6 +197,13 @@ impl Law {
         }
     }
 
+    /// How much more than this the torque can fall (`falls`) or rise before riser `k` is left; infinite at a wall.
+    pub(super) fn room(&self, k: usize, torque: f64, falls: bool) -> f64 {
+        let (left, right) = self.ends(k);
+        let stiction = if self.knots[k].kinds & FRICTION != 0 { self.stiction } else { 0.0 };
+        (if falls { torque - right } else { left - torque }) + stiction
+    }
+
     /// Torques at the left (upper) and right (lower) end of a riser.
     fn ends(&self, k: usize) -> (f64, f64) {
         let knot = &self.knots[k];

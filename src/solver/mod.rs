@@ -5,15 +5,24 @@
 
 mod axis_set;
 mod command;
+mod cone;
+mod couplings;
 mod drive;
+mod finish;
+mod gauss_seidel;
 mod inputs;
 mod law;
 mod refit;
+mod rows;
 mod smooth;
 mod soft;
+mod yielding;
 
 pub use axis_set::{AxisSet, Outcome, StateRef, StepStart, Work};
 pub use command::{AxisCommand, Mode};
+pub use cone::{ConeBlock, Plane, disc};
+pub use couplings::Stage as CouplingStage;
 pub use drive::Brakes;
 pub use law::{AxisInput, Law, law};
+pub use rows::{FINISH_ROWS, Kind, Row, Rows, Solved};
 pub use soft::write_softs;

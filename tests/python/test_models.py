@@ -15,7 +15,7 @@ from models import public_models
 EXPECTED = {
     "g1": {("note", "ignored-attribute")},
     "simple_humanoid": {("note", "ignored-element")},
-    "jvrc1": {("warning", "mimic-not-simulated"), ("note", "ignored-element")},
+    "jvrc1": {("note", "ignored-element")},
 }
 
 

@@ -4,6 +4,7 @@ mod chains;
 mod groups;
 mod inertias;
 mod masses;
+mod mimic;
 mod names;
 mod ranges;
 mod rigid;
@@ -29,6 +30,7 @@ pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints
     groups::check(d, tags, report);
     chains::check(d, tags, tree.is_some(), report);
     rigs::check(d, tags, report);
+    mimic::check(d, report);
     ranges::check(d, report);
     sides::check(d, report);
     softness::check(d, report);

@@ -6,21 +6,13 @@ use super::super::{Description, Position};
 use super::{place_of_joint, place_of_link};
 use std::collections::HashMap;
 
-/// Duplicate names, names that cannot be part of a topic name, mimic of a joint that does not exist.
+/// Duplicate names, names that cannot be part of a topic name.
 pub(super) fn check(d: &Description, report: &mut Report) {
     refuse_duplicates("link", d.links.iter().map(|l| (l.name.as_str(), l.at)), report);
     refuse_duplicates("joint", d.joints.iter().map(|j| (j.name.as_str(), j.at)), report);
     let places = d.links.iter().map(|l| (&l.name, place_of_link(l)));
     for (name, place) in places.chain(d.joints.iter().map(|j| (&j.name, place_of_joint(j)))) {
         warn_of_odd_name(name, place, report);
-    }
-    for joint in &d.joints {
-        let Some(mimic) = &joint.mimic else { continue };
-        if d.joints.iter().all(|other| other.name != mimic.joint) {
-            let place = Place { element: format!("joint '{}' <mimic>", joint.name), at: mimic.at };
-            let message = format!("there is no joint '{}' to follow", mimic.joint);
-            report.add(Finding::warning("unknown-joint", place, message, "name an existing joint"));
-        }
     }
 }
 

@@ -1,0 +1,324 @@
+//! Constraint rows in factor space: each holds its response y, so that its velocity is `bias + y·w` and its impulse x
+//! moves w by y x. No row knows of another, of the mass matrix, or of a robot.
+
+use super::cone::{ConeBlock, Plane, disc};
+
+/// Numbers in a chunk of w.
+pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
+/// More rows than this are left to the iteration: the direct finish costs their cube.
+pub const FINISH_ROWS: usize = 60;
+
+/// What the impulses of a block may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// One row with an impulse from `lower` to `upper`, which may be infinite: an equality, a stop, a bounded drive.
+    Bounds {
+        /// N·m·s or N·s.
+        lower: f64,
+        /// N·m·s or N·s.
+        upper: f64,
+    },
+    /// Three rows, normal, tangent, tangent: Coulomb's law.
+    Cone {
+        /// Coefficient of friction.
+        friction: f64,
+    },
+    /// One row (spinning) or two (rolling) within a disc whose radius is `ratio` times the impulse of another row.
+    Disc {
+        /// m.
+        ratio: f64,
+        /// Index of the row: the normal one of a contact.
+        normal: usize,
+    },
+}
+
+impl Kind {
+    /// An impulse of any size and sign.
+    pub const EQUALITY: Self = Self::Bounds { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Row {
+    /// Velocity without impulses, minus the one wanted: rad/s or m/s.
+    pub bias: f64,
+    /// Softness R ≥ 0: the row gives way by R times its impulse, rad/s per N·m·s. From J-18's CFM: CFM / step.
+    pub softness: f64,
+    /// Impulse, kept for the next step; N·m·s or N·s.
+    pub impulse: f64,
+}
+
+/// Rows that act on the same bodies and are solved as one.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    pub kind: Kind,
+    /// First row.
+    pub first: usize,
+    pub rows: usize,
+    /// Chunks of w in which its rows differ from 0.
+    pub ids: std::ops::Range<usize>,
+    /// Start of its numbers.
+    pub values: usize,
+    pub inner: Inner,
+}
+
+/// The block's own part of `Y Yᵀ + R`.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Inner {
+    /// Nothing moves when it pushes: it takes no part.
+    Off,
+    Single(f64),
+    Pair(Plane, f64),
+    Cone(ConeBlock),
+}
+
+/// What a solve came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Solved {
+    /// Largest violation, rad/s or m/s.
+    pub residual: f64,
+    /// Sweeps made.
+    pub sweeps: u32,
+    /// Tries of the direct finish.
+    pub tries: u32,
+    /// The largest velocity that the rows started with, rad/s or m/s: what a tolerance is relative to.
+    pub scale: f64,
+}
+
+impl Solved {
+    /// Is the residual at most this share of the velocities that the rows started with?
+    pub fn within(&self, tolerance: f64) -> bool {
+        self.residual <= tolerance * self.scale
+    }
+}
+
+/// The rows of a problem. Adding blocks may allocate; solving does not.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    pub(super) blocks: Vec<Block>,
+    pub(super) rows: Vec<Row>,
+    pub(super) ids: Vec<u32>,
+    pub(super) values: Vec<f64>,
+    pub(super) w: Vec<f64>,
+    pub(super) finish: super::finish::Scratch,
+}
+
+impl Rows {
+    /// No rows yet, over a w of this many numbers (a multiple of 4).
+    pub fn new(width: usize) -> Self {
+        Self {
+            blocks: vec![],
+            rows: vec![],
+            ids: vec![],
+            values: vec![],
+            w: vec![0.0; width],
+            finish: Default::default(),
+        }
+    }
+
+    /// Adds a block of `rows` rows over these chunks of w, ascending; returns its index. It starts switched off, with all
+    /// numbers 0; [`Rows::seal`] switches it on.
+    pub fn add(&mut self, kind: Kind, rows: usize, ids: &[u32]) -> usize {
+        let (first, start, values) = (self.rows.len(), self.ids.len(), self.values.len());
+        self.ids.extend_from_slice(ids);
+        self.values.resize(values + rows * ids.len() * CHUNK, 0.0);
+        self.rows.resize(first + rows, Row::default());
+        self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off });
+        self.finish.make_room(self.blocks.len(), self.rows.len());
+        self.blocks.len() - 1
+    }
+
+    /// Chunks of a block, and the numbers of its row `n` in them.
+    pub fn response(&mut self, block: usize, n: usize) -> (&[u32], &mut [f64]) {
+        let b = &self.blocks[block];
+        let (ids, length) = (&self.ids[b.ids.clone()], b.ids.len() * CHUNK);
+        let start = b.values + n * length;
+        (ids, &mut self.values[start..start + length])
+    }
+
+    /// Row `n` of a block.
+    pub fn row(&mut self, block: usize, n: usize) -> &mut Row {
+        &mut self.rows[self.blocks[block].first + n]
+    }
+
+    /// Changes what the impulses of a block may be.
+    pub fn set_kind(&mut self, block: usize, kind: Kind) {
+        self.blocks[block].kind = kind;
+    }
+
+    /// Impulse of the only row of a block.
+    pub(super) fn row_impulse(&self, block: usize) -> f64 {
+        self.rows[self.blocks[block].first].impulse
+    }
+
+    /// True if a block takes no part.
+    pub fn is_off(&self, block: usize) -> bool {
+        self.blocks[block].is_off()
+    }
+
+    /// All rows in the order of their blocks.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Takes the responses and softnesses of a block as they are now; it takes part from here on, unless nothing moves
+    /// when it pushes.
+    pub fn seal(&mut self, block: usize) {
+        let b = &self.blocks[block];
+        let inner = match b.rows {
+            1 => single(self.own(b, 0, 0)),
+            2 => pair([self.own(b, 0, 0), self.own(b, 0, 1), self.own(b, 1, 1)]),
+            _ => cone([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|(i, k)| self.own(b, i, k))),
+        };
+        self.blocks[block].inner = inner;
+    }
+
+    /// Takes a block out, and its impulses.
+    pub fn switch_off(&mut self, block: usize) {
+        let b = &mut self.blocks[block];
+        b.inner = Inner::Off;
+        for row in &mut self.rows[b.first..b.first + b.rows] {
+            row.impulse = 0.0;
+        }
+    }
+
+    fn own(&self, b: &Block, i: usize, k: usize) -> f64 {
+        let length = b.ids.len() * CHUNK;
+        let y = |n: usize| &self.values[b.values + n * length..b.values + (n + 1) * length];
+        let softness = if i == k { self.rows[b.first + i].softness } else { 0.0 };
+        dot(y(i), y(k)) + softness
+    }
+
+    /// Forgets all impulses.
+    pub fn reset(&mut self) {
+        for row in &mut self.rows {
+            row.impulse = 0.0;
+        }
+    }
+
+    /// Scales the impulses of the last step to a step of another length.
+    pub fn scale_impulses(&mut self, factor: f64) {
+        for row in &mut self.rows {
+            row.impulse *= factor;
+        }
+    }
+
+    /// Finds the impulses, from those of the last solve: at most `sweeps` Gauss–Seidel sweeps, then the direct finish if
+    /// it is needed and there are not too many rows. Ends early where the residual is `aim` times the velocities at the
+    /// start; about 1e-15 of them is rounding.
+    pub fn solve(&mut self, sweeps: u32, aim: f64) -> Solved {
+        self.gather();
+        let mut solved = Solved { scale: self.scale(), ..Solved::default() };
+        let wanted = aim * solved.scale;
+        while solved.sweeps < sweeps.max(1) {
+            solved.sweeps += 1;
+            if self.sweep() <= wanted {
+                break;
+            }
+        }
+        solved.residual = self.residual();
+        let bounded = |b: &Block| matches!(b.kind, Kind::Bounds { .. });
+        let direct = self.rows.len() <= FINISH_ROWS && self.blocks.iter().any(bounded);
+        if solved.residual > wanted && direct {
+            (solved.residual, solved.tries) = self.finish(solved.residual, wanted);
+        }
+        solved
+    }
+
+    /// w of the impulses.
+    pub(super) fn gather(&mut self) {
+        self.w.fill(0.0);
+        for b in 0..self.blocks.len() {
+            for n in 0..self.blocks[b].rows {
+                let x = self.rows[self.blocks[b].first + n].impulse;
+                self.push(b, n, x);
+            }
+        }
+    }
+
+    /// The velocities that the tolerance is relative to.
+    fn scale(&self) -> f64 {
+        let size = |b: &Block| {
+            let of = |n: usize| self.rows[b.first + n].bias.abs() + self.reach(b, n).abs();
+            (0..b.rows).map(of).fold(0.0, f64::max)
+        };
+        self.blocks.iter().filter(|b| !b.is_off()).map(size).fold(0.0, f64::max)
+    }
+
+    /// `y·w`.
+    #[inline(always)]
+    pub(super) fn reach(&self, b: &Block, n: usize) -> f64 {
+        let length = b.ids.len() * CHUNK;
+        let y = &self.values[b.values + n * length..b.values + (n + 1) * length];
+        let mut sum = [0.0; CHUNK];
+        for (id, y) in self.ids[b.ids.clone()].iter().zip(y.chunks_exact(CHUNK)) {
+            let w = &self.w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
+            for k in 0..CHUNK {
+                sum[k] += y[k] * w[k];
+            }
+        }
+        (sum[0] + sum[1]) + (sum[2] + sum[3])
+    }
+
+    /// `w += y x`.
+    #[inline(always)]
+    pub(super) fn push(&mut self, block: usize, n: usize, x: f64) {
+        if x == 0.0 {
+            return;
+        }
+        let b = &self.blocks[block];
+        let length = b.ids.len() * CHUNK;
+        let y = &self.values[b.values + n * length..b.values + (n + 1) * length];
+        for (id, y) in self.ids[b.ids.clone()].iter().zip(y.chunks_exact(CHUNK)) {
+            let w = &mut self.w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
+            for k in 0..CHUNK {
+                w[k] += y[k] * x;
+            }
+        }
+    }
+
+    /// Velocity of a row with all impulses, what its softness gives way included.
+    #[inline(always)]
+    pub(super) fn velocity(&self, b: &Block, n: usize) -> f64 {
+        let row = &self.rows[b.first + n];
+        row.bias + self.reach(b, n) + row.softness * row.impulse
+    }
+}
+
+impl Block {
+    pub fn is_off(&self) -> bool {
+        matches!(self.inner, Inner::Off)
+    }
+}
+
+fn single(h: f64) -> Inner {
+    if h > 0.0 { Inner::Single(h) } else { Inner::Off }
+}
+
+fn pair([a, b, d]: [f64; 3]) -> Inner {
+    if a * d - b * b > 0.0 && a > 0.0 { Inner::Pair(Plane::new(a, b, d), a + d) } else { Inner::Off }
+}
+
+fn cone(h: [f64; 6]) -> Inner {
+    if h[0] > 0.0 && h[3] > 0.0 && h[5] > 0.0 { Inner::Cone(ConeBlock::new(h)) } else { Inner::Off }
+}
+
+/// Of two rows over the same chunks.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sum = [0.0; CHUNK];
+    for (a, b) in a.chunks_exact(CHUNK).zip(b.chunks_exact(CHUNK)) {
+        for k in 0..CHUNK {
+            sum[k] += a[k] * b[k];
+        }
+    }
+    (sum[0] + sum[1]) + (sum[2] + sum[3])
+}
+
+/// A disc of a pair of rows, or ± the radius of one.
+pub(super) fn within_disc(inner: &Inner, r: [f64; 2], radius: f64) -> [f64; 2] {
+    match inner {
+        Inner::Pair(plane, _) => disc(plane, r, radius),
+        Inner::Single(h) => [(-r[0] / h).min(radius).max(-radius), 0.0],
+        _ => [0.0; 2],
+    }
+}
