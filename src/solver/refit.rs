@@ -1,6 +1,7 @@
 //! The axis set after joints have come apart, or have been made whole again.
 
 use super::AxisSet;
+use super::couplings::Couplings;
 use crate::model::{AxisSlot, Model};
 
 impl AxisSet {
@@ -9,6 +10,7 @@ impl AxisSet {
     pub fn refit(&mut self, m: &Model) {
         self.rates.resize(m.eulers.len(), Default::default());
         self.weight.resize(m.nv, 1.0);
+        self.couplings = Couplings::new(m);
         for (i, axis) in m.axes.iter().enumerate() {
             if matches!(axis.slot, AxisSlot::Apart { .. }) {
                 (self.memory[i], self.effort[i], self.speed[i]) = (0, 0.0, 0.0);

@@ -17,7 +17,8 @@ pub enum Side {
 }
 
 impl World {
-    /// Sets the position of an axis (rad or m). Its speed stays, and so do all other positions and speeds. From the root
+    /// Sets the position of an axis (rad or m). Its speed stays, and so do all other positions and speeds but those of axes that
+    /// are coupled to it (`<mimic>`). From the root
     /// side the base of the chain moves: a free base in the state, a fixed one in the model; [`World::reset`] takes both back.
     /// May allocate: not for the control loop.
     ///
@@ -31,7 +32,10 @@ impl World {
         }
         let before = link.map(|link| self.link_pose(link));
         let speed = self.engine.state.axis(&self.model, axis).1;
-        self.engine.state.set_axis(&self.model, axis, position, speed);
+        let mut state = self.engine.state.clone();
+        state.set_axis(&self.model, axis, position, speed);
+        state.couple_given(&self.model, &[axis])?;
+        self.engine.state = state;
         self.update();
         if let (Some(link), Some(before)) = (link, before) {
             let back = before * self.link_pose(link).inverse();
