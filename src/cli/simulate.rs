@@ -224,7 +224,10 @@ impl<'a> Plan<'a> {
                 "steps were made by implicit_midpoint, because an axis began or ceased to stand still, a servo was on its \
                  way, a viscous term was stiff, or a joint is soft or a fixed one that may break",
             ),
-            (s.halvings, "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same"),
+            (
+                s.halvings,
+                "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same",
+            ),
             (s.unsettled_steps, "steps ended before the axis laws had settled: allow more --iterations"),
             (
                 s.guarded_pieces,

@@ -87,7 +87,7 @@ impl Rbx {
                 }
                 End::NoContraction => {
                     report.unsettled = true;
-                    self.explicit_piece(m, mid, &part);
+                    self.explicit_piece(m, mid, commands, &part);
                     self.guard(m, mid, part.gravity, report);
                 }
             }
@@ -111,7 +111,8 @@ impl Rbx {
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects, self.whole_step);
         self.qdd.copy_from_slice(&mid.guess);
-        self.set_middle(m, mid, s.h);
+        self.mean_velocities(mid, s.h);
+        self.half_way(m, mid, s.h);
         let (mut pass, mut last) = (0, f64::INFINITY);
         loop {
             pass += 1;
@@ -119,7 +120,7 @@ impl Rbx {
             let at = (mid.middle.as_ref(), &mid.start.v[..]);
             let misfits = self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, wanted));
             // Accelerations of laws that do not fit may be wild: the middle does not follow them.
-            let moved = if misfits == 0 || !wanted { self.set_middle(m, mid, s.h) } else { 1.0 };
+            let moved = if misfits == 0 || !wanted { self.mean_velocities(mid, s.h) } else { 1.0 };
             if misfits == 0 && moved <= TOLERANCE {
                 return End::Converged;
             }
@@ -133,35 +134,45 @@ impl Rbx {
                     _ => End::Unsettled,
                 };
             }
+            if misfits == 0 {
+                self.half_way(m, mid, s.h);
+            }
             last = if misfits == 0 { moved } else { f64::INFINITY };
         }
     }
 
     /// The last resort: accelerations of the start of the piece.
-    fn explicit_piece(&mut self, m: &Model, mid: &mut Midpoint, s: &StepSettings) {
+    fn explicit_piece(&mut self, m: &Model, mid: &mut Midpoint, commands: &[AxisCommand], s: &StepSettings) {
+        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, mean: true };
+        self.axes.prepare(m, &start, s.effects);
         let at = (mid.start.as_ref(), &mid.start.v[..]);
         self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, false));
         self.take(m, mid, s.h);
         mid.forget();
     }
 
-    /// Takes the middle of the step from the accelerations; returns by how much its velocities have moved.
-    fn set_middle(&mut self, m: &Model, mid: &mut Midpoint, h: f64) -> f64 {
+    /// Takes the velocities of the middle from the accelerations; returns by how much they have moved.
+    fn mean_velocities(&mut self, mid: &mut Midpoint, h: f64) -> f64 {
         let (mut moved, mut finite) = (0.0_f64, true);
-        for k in 0..m.nv {
-            let (v0, change) = (mid.start.v[k], h * self.qdd[k]);
-            let v = v0 + 0.5 * change;
-            let step = (v - mid.middle.v[k]).abs() / (1.0 + v.abs());
+        for (v, (v0, a)) in mid.middle.v.iter_mut().zip(mid.start.v.iter().zip(&self.qdd)) {
+            let new = v0 + 0.5 * h * a;
+            let step = (new - *v).abs() / (1.0 + new.abs());
             (moved, finite) = (moved.max(step), finite && step.is_finite());
-            mid.middle.v[k] = v;
-            mid.u[k] = v0 + self.axes.weight[k] * change;
+            *v = new;
+        }
+        if finite { moved } else { f64::INFINITY }
+    }
+
+    /// Moves half-way with the speeds that the coordinates have by the accelerations.
+    fn half_way(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
+        for k in 0..m.nv {
+            mid.u[k] = mid.start.v[k] + self.axes.weight[k] * h * self.qdd[k];
         }
         move_coordinates(m, &mid.start.q, &mid.u, 0.5 * h, &mut mid.middle.q);
         if !m.eulers.is_empty() {
             mid.middle.angles.copy_from_slice(&mid.start.angles);
             mid.middle.read_angles(m);
         }
-        if finite { moved } else { f64::INFINITY }
     }
 
     /// Takes the step with the accelerations of the last pass.

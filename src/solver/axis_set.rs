@@ -9,7 +9,7 @@
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
 use super::couplings::Couplings;
-use super::law::{FRICTION, Law, law};
+use super::law::{FRICTION, Law};
 use super::{AxisCommand, AxisInput, Brakes};
 use crate::dynamics::{Workspace, aba_hybrid};
 use crate::math::V3;
@@ -145,6 +145,7 @@ impl AxisSet {
             let (q, v) = self.axis_state(m, axis, start.state);
             self.speed[i] = v;
             self.rotor[i] = if effects.rotor_inertia { self.drives[i].rotor_inertia } else { 0.0 };
+            let ungraspable = self.ungraspable(axis);
             let input = AxisInput {
                 axis,
                 limits: &self.drives[i],
@@ -153,7 +154,11 @@ impl AxisSet {
                 stuck: self.memory[i] & FRICTION != 0 || v == 0.0,
                 brakes: self.brakes[i],
             };
-            self.laws[i] = if self.ungraspable(axis) { Law::default() } else { law(&input, effects, start.h) };
+            if ungraspable {
+                self.laws[i].clear()
+            } else {
+                self.laws[i].set(&input, effects, start.h)
+            }
             self.place[i] = self.laws[i].guess(v, self.memory[i]);
             self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }

@@ -94,28 +94,34 @@ pub struct AxisInput<'a> {
     pub brakes: Brakes,
 }
 
-/// The law of an axis for a step of `h` seconds.
-pub fn law(input: &AxisInput, effects: Effects, h: f64) -> Law {
-    let mut l = Law::default();
-    if effects.damping {
-        l.damping = input.axis.damping;
-        l.segments[0].slope = l.damping;
-    }
-    if effects.drives {
-        l.drive = DriveLaw::of(input, h);
-    }
-    if effects.limits {
-        l.stops(input, h);
-    }
-    l.add_drive();
-    if effects.friction {
-        l.dry_friction(input);
-    }
-    l.finish();
-    l
-}
-
 impl Law {
+    /// Becomes the law of an axis for a step of `h` seconds.
+    pub fn set(&mut self, input: &AxisInput, effects: Effects, h: f64) {
+        self.clear();
+        if effects.damping {
+            self.damping = input.axis.damping;
+            self.segments[0].slope = self.damping;
+        }
+        if effects.drives {
+            self.drive = DriveLaw::of(input, h);
+        }
+        if effects.limits {
+            self.stops(input, h);
+        }
+        self.add_drive();
+        if effects.friction {
+            self.dry_friction(input);
+        }
+        self.finish();
+    }
+
+    /// No torque at all. Knots and segments that do not count stay as they are.
+    pub fn clear(&mut self) {
+        (self.count, self.segments[0]) = (0, Segment::default());
+        (self.stiction, self.push, self.damping, self.friction) = (0.0, 0.0, 0.0, 0.0);
+        (self.in_soft_stop, self.drive) = (false, DriveLaw::Idle);
+    }
+
     /// A servo without a bound on its torque wants what the stops allow.
     fn add_drive(&mut self) {
         let wall = |kind: u8| self.knots[..self.count].iter().find(|k| k.kinds & kind != 0).map(|k| k.speed);

@@ -1,6 +1,6 @@
 //! What acts on an axis besides the smooth dynamics: damping, dry friction, stops, drives.
 //!
-//! Everything stiff is implicit. The laws of one axis are a monotone staircase of torque over its speed ([`law`]); all axes
+//! Everything stiff is implicit. The laws of one axis are a monotone staircase of torque over its speed ([`Law`]); all axes
 //! together are solved as a set ([`AxisSet`]) with the hybrid dynamics.
 
 mod axis_set;
@@ -23,6 +23,6 @@ pub use command::{AxisCommand, Mode};
 pub use cone::{ConeBlock, Plane, disc};
 pub use couplings::Stage as CouplingStage;
 pub use drive::Brakes;
-pub use law::{AxisInput, Law, law};
+pub use law::{AxisInput, Law};
 pub use rows::{FINISH_ROWS, Kind, Row, Rows, Solved};
 pub use soft::write_softs;

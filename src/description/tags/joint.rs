@@ -91,7 +91,8 @@ fn read_drive(element: &Element, kind: JointKind, report: &mut Report) -> Drive 
 /// The slope of a shorted motor is max_torque / no_load_speed.
 fn warn_of_a_brake_without_a_line(drive: &Drive, element: &Element, report: &mut Report) {
     if drive.short_brake && drive.no_load_speed.is_none() {
-        let message = "short_brake has no effect without no_load_speed: how hard it brakes follows from both".to_string();
+        let message =
+            "short_brake has no effect without no_load_speed: how hard it brakes follows from both".to_string();
         let mend = "give no_load_speed (and max_torque, or <limit effort>)";
         report.add(Finding::warning("brake-without-line", element.place_of("short_brake", report), message, mend));
     }
