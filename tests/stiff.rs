@@ -166,7 +166,7 @@ fn missing_energy(h: f64) -> f64 {
 fn random_world(seed: u64, h: f64) -> World {
     let mut rng = Random(seed);
     let joints: Vec<JointType> = (0..9).map(|i| ALL[(i + seed as usize) % 4]).collect();
-    let mut m = tree(&joints, seed % 2 == 0, seed);
+    let mut m = tree(&joints, seed.is_multiple_of(2), seed);
     for a in &mut m.axes {
         (a.damping, a.friction) = (rng.unit().abs(), rng.unit().abs());
         (a.lower, a.upper) = (-0.5 - rng.unit().abs(), 0.5 + rng.unit().abs());

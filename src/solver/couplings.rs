@@ -232,7 +232,7 @@ impl AxisSet {
         loose
     }
 
-    /// As [`AxisSet::couple`] in a stage of an explicit step: brings the accelerations together. False if the step is better
+    /// As `AxisSet::couple` in a stage of an explicit step: brings the accelerations together. False if the step is better
     /// made otherwise.
     ///
     /// What takes a deviation back is read at the beginning of the step: the stages in between leave a curved constraint by
