@@ -10,7 +10,7 @@ use crate::engine::{ENGINE_NAMES, State};
 use crate::math::{Pose, Vec3};
 use crate::model::{Base, EFFECT_NAMES, Model};
 use crate::record::{Format, RecordError, Recorder, Sample};
-use crate::world::{Settings, World};
+use crate::world::{Settings, Stats, World};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -217,35 +217,8 @@ impl<'a> Plan<'a> {
 
     fn summary(&self, outcome: &Outcome) -> serde_json::Value {
         let (s, cpu) = (self.world.stats(), outcome.cpu);
-        let mut warnings = self.warnings.clone();
-        let counted = [
-            (
-                s.fallback_steps,
-                "steps were made by implicit_midpoint, because an axis began or ceased to stand still, a servo was on its \
-                 way, a viscous term was stiff, or a joint is soft or a fixed one that may break",
-            ),
-            (
-                s.halvings,
-                "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same",
-            ),
-            (s.unsettled_steps, "steps ended before the axis laws had settled: allow more --iterations"),
-            (
-                s.guarded_pieces,
-                "pieces of steps were not resolved by the shortest piece there is: the motion of the limbs was slowed down \
-                 to the energy that drives and weight had paid for (guarded_energy, J); take a finer step",
-            ),
-            (s.pole_steps, "steps had a 3dof group at its pole: torques about its angles were bounded there"),
-            (s.diverged_steps, "step would have given values that are not finite: the world stood still from there on"),
-        ];
-        if outcome.stopped {
-            warnings.push("stopped by a signal before the end of the duration".into());
-        }
-        if !outcome.finite && s.diverged_steps == 0 {
-            warnings.push("a value is not finite: the state can be represented, its energy or momentum cannot".into());
-        }
-        let broken = self.world.broken();
-        warnings.extend(broken.iter().map(|b| format!("joint '{}' {b}, more than its break_threshold", b.joint)));
-        warnings.extend(counted.iter().filter(|(n, _)| *n > 0).map(|(n, text)| format!("{n} {text}")));
+        let broken = self.world.broken().iter();
+        let broken: Vec<_> = broken.map(|b| json!({"joint": *b.joint, "time": b.time, "force": b.force})).collect();
         json!({
             "steps": s.steps,
             "rows": outcome.rows,
@@ -264,10 +237,47 @@ impl<'a> Plan<'a> {
             "guarded_energy": s.guarded_energy,
             "energy": self.ledger(outcome.energy),
             "pole_steps": s.pole_steps,
-            "broken_joints": broken.iter().map(|b| json!({"joint": *b.joint, "time": b.time, "force": b.force})).collect::<Vec<_>>(),
-            "warnings": warnings,
+            "broken_joints": broken,
+            "warnings": self.all_warnings(outcome),
         })
     }
+
+    /// Those from before the run, and what the run had to tell.
+    fn all_warnings(&self, outcome: &Outcome) -> Vec<String> {
+        let s = self.world.stats();
+        let mut warnings = self.warnings.clone();
+        if outcome.stopped {
+            warnings.push("stopped by a signal before the end of the duration".into());
+        }
+        if !outcome.finite && s.diverged_steps == 0 {
+            warnings.push("a value is not finite: the state can be represented, its energy or momentum cannot".into());
+        }
+        let broken = self.world.broken().iter();
+        warnings.extend(broken.map(|b| format!("joint '{}' {b}, more than its break_threshold", b.joint)));
+        let counted = counted(&s).into_iter().filter(|(n, _)| *n > 0);
+        warnings.extend(counted.map(|(n, text)| format!("{n} {text}")));
+        warnings
+    }
+}
+
+/// What is counted in a run, and what it means.
+fn counted(s: &Stats) -> [(u64, &'static str); 6] {
+    [
+        (
+            s.fallback_steps,
+            "steps were made by implicit_midpoint, because an axis began or ceased to stand still, a servo was on its \
+             way, a viscous term was stiff, or a joint is soft or a fixed one that may break",
+        ),
+        (s.halvings, "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same"),
+        (s.unsettled_steps, "steps ended before the axis laws had settled: allow more --iterations"),
+        (
+            s.guarded_pieces,
+            "pieces of steps were not resolved by the shortest piece there is: the motion of the limbs was slowed down \
+             to the energy that drives and weight had paid for (guarded_energy, J); take a finer step",
+        ),
+        (s.pole_steps, "steps had a 3dof group at its pole: torques about its angles were bounded there"),
+        (s.diverged_steps, "step would have given values that are not finite: the world stood still from there on"),
+    ]
 }
 
 fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {

@@ -111,6 +111,7 @@ impl Diagnostics {
         let state = match (latest.finite, latest.broken.is_empty()) {
             (false, _) => (Level::Error, "diverged: stands still at the last finite state"),
             (_, false) => (Level::Warn, "joints have come apart"),
+            _ if latest.stats.guarded_pieces > 0 => (Level::Warn, "limbs too fast for any step were slowed down"),
             _ => (Level::Ok, "finite"),
         };
         let mut values = vec![
@@ -119,6 +120,9 @@ impl Diagnostics {
             pair("steps", latest.stats.steps),
             pair("fallback steps", latest.stats.fallback_steps),
             pair("unsettled steps", latest.stats.unsettled_steps),
+            pair("halvings", latest.stats.halvings),
+            pair("guarded pieces", latest.stats.guarded_pieces),
+            pair("guarded energy [J]", latest.stats.guarded_energy),
             pair("pole steps", latest.stats.pole_steps),
             pair("finite", latest.finite),
             pair("broken joints", latest.broken.len()),
