@@ -107,7 +107,7 @@ impl Rbx {
         s: &StepSettings,
         report: &mut StepReport,
     ) -> End {
-        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, mean: true };
+        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects, self.whole_step);
         self.qdd.copy_from_slice(&mid.guess);
@@ -143,7 +143,7 @@ impl Rbx {
 
     /// The last resort: accelerations of the start of the piece.
     fn explicit_piece(&mut self, m: &Model, mid: &mut Midpoint, commands: &[AxisCommand], s: &StepSettings) {
-        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, mean: true };
+        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true };
         self.axes.prepare(m, &start, s.effects);
         let at = (mid.start.as_ref(), &mid.start.v[..]);
         self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, false));
@@ -177,7 +177,7 @@ impl Rbx {
 
     /// Takes the step with the accelerations of the last pass.
     fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
-        self.axes.finish(m, &self.ws, h, &self.qdd);
+        self.axes.finish(m, &self.ws, &mid.middle.q, (h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
         for k in 0..m.nv {
             let change = h * self.qdd[k];

@@ -289,7 +289,7 @@ impl Rbx {
 
     fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> Outcome {
         let at = self.state.as_ref();
-        let start = StepStart { state: at, commands, h: s.h, mean: false };
+        let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects, self.whole_step);
         let mut passes = 0;
@@ -302,7 +302,7 @@ impl Rbx {
                 break misfits == 0;
             }
         };
-        self.axes.finish(m, &self.ws, s.h, &self.qdd);
+        self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         self.axes.round_speeds(m, &mut self.state.v);
@@ -312,7 +312,7 @@ impl Rbx {
 
     /// False, with the state as before, if the step is not smooth.
     fn rk4(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> bool {
-        let start = StepStart { state: self.state.as_ref(), commands, h: s.h, mean: true };
+        let start = StepStart { state: self.state.as_ref(), commands, h: s.h, whole: s.h, mean: true };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         if !self.axes.is_smooth(m) {
             return false;

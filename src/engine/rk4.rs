@@ -35,7 +35,8 @@ impl Rbx {
             aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), s.gravity, &mut self.qdd);
             let at = CouplingStage { h: s.h, first: stage == 0 };
             let coupled = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), at, &mut self.qdd);
-            if !coupled || !self.axes.stage_fits(m, &self.ws, s.h, &self.qdd) {
+            let soft_enough = stage > 0 || self.axes.is_soft_enough(m, &self.ws, &self.state.q, s.h);
+            if !coupled || !soft_enough || !self.axes.stage_fits(m, &self.ws, &self.qdd) {
                 return false;
             }
             coordinate_rates(m, &self.state.q, &self.state.v, &mut st.rates);

@@ -9,6 +9,7 @@
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
 use super::couplings::Couplings;
+use super::mobility::Answers;
 use super::law::{FRICTION, Law};
 use super::{AxisCommand, AxisInput, Brakes};
 use crate::dynamics::{Workspace, aba_hybrid};
@@ -47,6 +48,8 @@ pub struct StepStart<'a> {
     pub commands: &'a [AxisCommand],
     /// Step, s.
     pub h: f64,
+    /// The step that it is a piece of, s.
+    pub whole: f64,
     /// Sliding axes move with their mean speed; else all move with the speed at the end.
     pub mean: bool,
 }
@@ -83,6 +86,8 @@ pub struct AxisSet {
     pub(super) brakes: Vec<Brakes>,
     /// Per axis: inertia of the rotor, 0 while that effect is off.
     pub(super) rotor: Vec<f64>,
+    /// Per axis with a rotor: what its gradient times ω̇ has beyond the acceleration of its angle; 0 but in 3DOF groups.
+    pub(super) turning: Vec<f64>,
     /// Per velocity coordinate: share of the new velocity in the speed with which it moves, ½ or 1.
     pub weight: Vec<f64>,
     /// Per axis: drive torque really applied.
@@ -95,6 +100,8 @@ pub struct AxisSet {
     patience: u32,
     /// Rows that hold followers to their leaders, if there are any.
     pub(super) couplings: Option<Box<Couplings>>,
+    /// `None` only while it is used.
+    pub(super) answers: Option<Box<Answers>>,
 }
 
 impl AxisSet {
@@ -114,9 +121,11 @@ impl AxisSet {
             speed: vec![0.0; n],
             brakes: vec![Brakes::default(); n],
             rotor: vec![0.0; n],
+            turning: vec![0.0; n],
             weight: vec![1.0; model.nv],
             effort: vec![0.0; n],
             couplings: Couplings::new(model),
+            answers: Some(Box::new(Answers::new(model))),
             work: Work::default(),
             paid: (0.0, 0.0),
             mean: false,
@@ -157,7 +166,7 @@ impl AxisSet {
             if ungraspable {
                 self.laws[i].clear()
             } else {
-                self.laws[i].set(&input, effects, start.h)
+                self.laws[i].set(&input, effects, (start.h, start.whole))
             }
             self.place[i] = self.laws[i].guess(v, self.memory[i]);
             self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
@@ -197,9 +206,12 @@ impl AxisSet {
         (gravity, h): ([f64; 3], f64),
         (qdd, wanted): (&mut [f64], bool),
     ) -> usize {
-        self.take_rates(m, at.angles, v0);
+        self.take_rates(m, at, v0);
         self.write_inputs(m, ws, h);
         aba_hybrid(m, ws, (at.q, at.v), gravity, qdd);
+        if let Some(answers) = &mut self.answers {
+            answers.forget();
+        }
         let loose = self.couple(m, ws, at, h, qdd);
         let misfits = self.misfits(m, ws, (h, qdd)) + loose;
         if misfits > 0 && wanted {
@@ -216,13 +228,14 @@ impl AxisSet {
 
     /// Notes for every axis to which side it leaves its part of the law; returns how many do.
     fn misfits(&mut self, m: &Model, ws: &Workspace<f64>, (h, qdd): (f64, &[f64])) -> usize {
-        let mut count = 0;
+        let (mut count, mut breaking) = (0, 0);
         for (i, axis) in m.axes.iter().enumerate() {
             self.moves[i] = 0;
             let (law, place) = (&self.laws[i], self.place[i]);
             if place % 2 == 1 {
                 self.moves[i] = law.leaves_riser(place / 2, self.riser_torque(m, ws, i, qdd));
-                count += usize::from(self.moves[i] != 0);
+                let moves = usize::from(self.moves[i] != 0);
+                if law.stiction > 0.0 { breaking += moves } else { count += moves }
                 continue;
             }
             let stiff = law.segments[place / 2].slope * h * self.mobility(m, ws, i) > 1.0;
@@ -238,7 +251,19 @@ impl AxisSet {
             self.at_end[i] |= hardens;
             count += usize::from(hardens || self.moves[i] != 0);
         }
-        count
+        if count > 0 && breaking > 0 {
+            self.keep_stuck();
+        }
+        count + breaking
+    }
+
+    /// An axis breaks loose only when all others fit their laws: before that its reaction may be that of a guess.
+    fn keep_stuck(&mut self) {
+        for (step, (law, place)) in self.moves.iter_mut().zip(self.laws.iter().zip(&self.place)) {
+            if place % 2 == 1 && law.stiction > 0.0 {
+                *step = 0;
+            }
+        }
     }
 
     /// Moves all that do not fit, or only the last of them.
@@ -248,7 +273,7 @@ impl AxisSet {
                 continue;
             }
             self.place[i] = self.laws[i].neighbour(self.place[i], self.moves[i]);
-            self.laws[i].stiction = 0.0;
+            self.laws[i].hold(self.place[i]);
             self.at_end[i] |= self.place[i] % 2 == 1;
             if !all {
                 return;
@@ -256,8 +281,9 @@ impl AxisSet {
         }
     }
 
-    /// Ends an implicit step of `h` seconds with these accelerations: remembers the places, writes efforts and work.
-    pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, h: f64, qdd: &[f64]) {
+    /// Ends an implicit step of `h` seconds with these accelerations: remembers the places, writes efforts and work. `q` (nq) is
+    /// the state of the last pass.
+    pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
         self.paid = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
             let (law, place) = (&self.laws[i], self.place[i]);
@@ -270,9 +296,12 @@ impl AxisSet {
                 self.memory[i] = law.knots[k].kinds;
                 (law.drive_torque(speed, Some((k, total))), total)
             } else {
+                let torques = (law.drive_torque(moved, None), law.on_segment(k, moved));
                 self.memory[i] = 0;
-                self.brakes[i].mobility = self.mobility(m, ws, i);
-                (law.drive_torque(moved, None), law.on_segment(k, moved))
+                if law.is_servo() {
+                    self.brakes[i].mobility = self.whole_mobility(m, ws, q, i);
+                }
+                torques
             };
             self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
             self.effort[i] = effort;

@@ -7,6 +7,11 @@
 use super::Mode;
 use super::law::{AxisInput, Knot, SERVO, Segment, WALL_LEFT, WALL_RIGHT, bounded};
 
+/// A servo that wants less than this has arrived, rad/s or m/s.
+const STILL: f64 = 1e-9;
+/// No-load speed that stands for less, rad/s or m/s.
+const SLOWEST: f64 = 1e-9;
+
 /// How well a servo can slow its load down, seen in the last step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Brakes {
@@ -35,7 +40,8 @@ impl DriveLaw {
     pub fn of(input: &AxisInput, h: f64) -> Self {
         let (limits, c) = (input.limits, &input.command);
         let given = |command: f64, own: f64| if command.is_nan() { own } else { command.abs().min(own) };
-        let speed = given(c.speed, limits.no_load_speed);
+        // A line that ends where it begins has no slope that a number can hold.
+        let speed = given(c.speed, limits.no_load_speed).max(SLOWEST);
         match c.mode {
             Mode::Idle => Self::Idle,
             Mode::Torque if c.torque == 0.0 || c.torque.is_nan() => Self::unpowered(input),
@@ -47,6 +53,7 @@ impl DriveLaw {
                 }
                 let bound = given(c.speed, limits.max_speed);
                 let wanted = bounded(approach(input, torque, h), bound);
+                let wanted = if wanted.abs() < STILL { 0.0 } else { wanted };
                 Self::Servo { wanted, torque, speed }
             }
         }

@@ -24,7 +24,8 @@ impl AxisSet {
             } else {
                 let share = if self.at_end[i] { 1.0 } else { 0.5 };
                 let slope = law.segments[place / 2].slope;
-                Input::Sliding { torque: law.on_segment(place / 2, v), diagonal: share * slope * h + self.rotor[i] }
+                let torque = law.on_segment(place / 2, v) + self.rotor[i] * self.turning[i];
+                Input::Sliding { torque, diagonal: share * slope * h + self.rotor[i] }
             };
             self.write(m, ws, i, input);
         }
@@ -55,7 +56,10 @@ impl AxisSet {
 
     /// Torque of the law that keeps a standing axis to its acceleration: what its joint needs, and its rotor.
     pub(super) fn riser_torque(&self, m: &Model, ws: &Workspace<f64>, i: usize, qdd: &[f64]) -> f64 {
-        let rotor = if self.rotor[i] > 0.0 { self.rotor[i] * self.axis_rate(m, &m.axes[i], qdd) } else { 0.0 };
+        let rotor = match self.rotor[i] {
+            0.0 => 0.0,
+            rotor => rotor * (self.axis_rate(m, &m.axes[i], qdd) - self.turning[i]),
+        };
         let joint = match m.axes[i].slot {
             AxisSlot::Apart { .. } => 0.0,
             AxisSlot::Scalar { v, .. } => ws.reaction[v],
@@ -78,14 +82,17 @@ impl AxisSet {
     }
 
     /// Angles at the state of the pass; the speeds at the start of the step, seen along their gradients.
-    pub(super) fn take_rates(&mut self, m: &Model, angles: &[[f64; 3]], v0: &[f64]) {
+    pub(super) fn take_rates(&mut self, m: &Model, at: super::StateRef, v0: &[f64]) {
         if m.eulers.is_empty() {
             return;
         }
-        self.update_rates(m, angles);
+        self.update_rates(m, at.angles);
         for (i, axis) in m.axes.iter().enumerate() {
-            if matches!(axis.slot, AxisSlot::Euler { .. }) {
+            if let AxisSlot::Euler { group, angle } = axis.slot {
                 self.speed[i] = self.axis_rate(m, axis, v0);
+                if self.rotor[i] > 0.0 {
+                    self.turning[i] = self.rates[group].gradient[angle].dot(self.turning(m, at, group));
+                }
             }
         }
     }

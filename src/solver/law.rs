@@ -66,8 +66,12 @@ pub struct Law {
     pub(super) knots: [Knot; KNOTS],
     pub(super) count: usize,
     pub(super) segments: [Segment; KNOTS + 1],
-    /// By how much static friction exceeds the dynamic one, as long as the axis has not broken loose.
+    /// By how much static friction exceeds the dynamic one while the axis is on the riser of its friction.
     pub(super) stiction: f64,
+    /// The same for an axis that stood at the start of the step, 0 for others.
+    stood: f64,
+    /// Soft stops: their stiffness, and the speeds at which they begin.
+    soft: (f64, f64, f64),
     /// Outside its range: by how much it is put back after the step, rad or m, signed.
     pub(super) push: f64,
     /// The axis stands in a soft stop: a spring, whose speed is that at the end of the step.
@@ -95,8 +99,8 @@ pub struct AxisInput<'a> {
 }
 
 impl Law {
-    /// Becomes the law of an axis for a step of `h` seconds.
-    pub fn set(&mut self, input: &AxisInput, effects: Effects, h: f64) {
+    /// Becomes the law of an axis for a step of `h` seconds, which may be a piece of one of `whole`.
+    pub fn set(&mut self, input: &AxisInput, effects: Effects, (h, whole): (f64, f64)) {
         self.clear();
         if effects.damping {
             self.damping = input.axis.damping;
@@ -106,7 +110,7 @@ impl Law {
             self.drive = DriveLaw::of(input, h);
         }
         if effects.limits {
-            self.stops(input, h);
+            self.stops(input, (h, whole));
         }
         self.add_drive();
         if effects.friction {
@@ -118,7 +122,8 @@ impl Law {
     /// No torque at all. Knots and segments that do not count stay as they are.
     pub fn clear(&mut self) {
         (self.count, self.segments[0]) = (0, Segment::default());
-        (self.stiction, self.push, self.damping, self.friction) = (0.0, 0.0, 0.0, 0.0);
+        (self.stiction, self.stood, self.push) = (0.0, 0.0, 0.0);
+        (self.damping, self.friction, self.soft) = (0.0, 0.0, (0.0, f64::NEG_INFINITY, f64::INFINITY));
         (self.in_soft_stop, self.drive) = (false, DriveLaw::Idle);
     }
 
@@ -139,7 +144,8 @@ impl Law {
         let limits = input.limits;
         self.friction = input.axis.friction + limits.dynamic_resistance;
         if input.stuck {
-            self.stiction = (limits.static_resistance - limits.dynamic_resistance).max(0.0);
+            self.stood = (limits.static_resistance - limits.dynamic_resistance).max(0.0);
+            self.stiction = self.stood;
         }
         if self.friction + self.stiction > 0.0 {
             self.segments[0].intercept += self.friction;
@@ -149,21 +155,29 @@ impl Law {
 
     /// A stop is reached exactly at the end of the step. A soft one yields by its CFM per torque, and its ERP is that of its
     /// spring. Beyond a hard one the axis may only come back; its ERP's share of the way is a push that gives no speed.
-    fn stops(&mut self, input: &AxisInput, h: f64) {
+    fn stops(&mut self, input: &AxisInput, (h, whole): (f64, f64)) {
         let (axis, soft) = (input.axis, input.axis.stop.cfm > 0.0);
         let touching = AT_STOP * (1.0 + input.q.abs());
+        // Share of h k + d that is left of the whole step's, whose spring and damper a piece keeps.
+        let piece = 1.0 - axis.stop.erp * (1.0 - h / whole);
         let room = |gap: f64| match gap {
             _ if gap.abs() <= touching => 0.0,
             _ if gap > 0.0 => gap / h,
-            _ if soft => axis.stop.erp * gap / h,
+            _ if soft => axis.stop.erp * gap / (whole * piece),
             _ => 0.0,
         };
-        let stiffness = if soft { 1.0 / axis.stop.cfm } else { 0.0 };
+        let stiffness = if soft { piece / axis.stop.cfm } else { 0.0 };
+        self.soft.0 = stiffness;
         for (gap, side, kind) in [(input.q - axis.lower, -1.0, LOWER), (axis.upper - input.q, 1.0, UPPER)] {
             if !gap.is_finite() {
                 continue;
             }
             let speed = side * room(gap);
+            if kind == LOWER {
+                self.soft.1 = speed;
+            } else {
+                self.soft.2 = speed;
+            }
             if soft && kind == LOWER {
                 self.segments[0].slope += stiffness;
                 self.segments[0].intercept += stiffness * speed;
@@ -221,7 +235,7 @@ impl Law {
 
     fn is_riser(&self, k: usize) -> bool {
         let knot = &self.knots[k];
-        let sticks = self.stiction > 0.0 && knot.kinds & FRICTION != 0;
+        let sticks = self.stood > 0.0 && knot.kinds & FRICTION != 0;
         knot.drop > 0.0 || knot.kinds & (WALL_LEFT | WALL_RIGHT) != 0 || sticks
     }
 
@@ -278,6 +292,18 @@ impl Law {
         v.max(low).min(high)
     }
 
+    /// Static friction holds an axis that stood at the start of the step as long as it stands: in the other parts of the law it has
+    /// broken loose, but it may come back in a later pass, when the laws of the others fit.
+    pub(super) fn hold(&mut self, place: usize) {
+        let stands = place % 2 == 1 && self.knots[place / 2].kinds & FRICTION != 0;
+        self.stiction = if stands { self.stood } else { 0.0 };
+    }
+
+    /// Is the drive a servo?
+    pub(super) fn is_servo(&self) -> bool {
+        matches!(self.drive, DriveLaw::Servo { .. })
+    }
+
     /// The neighbouring place; a kink has no place of its own.
     pub(super) fn neighbour(&self, place: usize, side: isize) -> usize {
         let next = place.saturating_add_signed(side);
@@ -314,7 +340,9 @@ impl Law {
         let beside = if speed > 0.0 { -self.friction } else { self.friction };
         match riser {
             Some((k, total)) if self.knots[k].kinds & SERVO != 0 => {
-                let rest = total + self.damping * speed;
+                let (stiffness, lower, upper) = self.soft;
+                let soft_stop = stiffness * ((lower - speed).max(0.0) - (speed - upper).max(0.0));
+                let rest = total + self.damping * speed - if stiffness > 0.0 { soft_stop } else { 0.0 };
                 let held = self.friction + self.stiction;
                 let friction = if self.knots[k].kinds & FRICTION != 0 { bounded(rest, held) } else { beside };
                 let (low, high) = self.drive.range(speed);

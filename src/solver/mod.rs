@@ -12,6 +12,7 @@ mod finish;
 mod gauss_seidel;
 mod inputs;
 mod law;
+mod mobility;
 mod refit;
 mod rows;
 mod smooth;

@@ -2,6 +2,7 @@
 
 use super::AxisSet;
 use super::couplings::Couplings;
+use super::mobility::Answers;
 use crate::model::{AxisSlot, Model};
 
 impl AxisSet {
@@ -11,6 +12,7 @@ impl AxisSet {
         self.rates.resize(m.eulers.len(), Default::default());
         self.weight.resize(m.nv, 1.0);
         self.couplings = Couplings::new(m);
+        self.answers = Some(Box::new(Answers::new(m)));
         for (i, axis) in m.axes.iter().enumerate() {
             if matches!(axis.slot, AxisSlot::Apart { .. }) {
                 (self.memory[i], self.effort[i], self.speed[i]) = (0, 0.0, 0.0);

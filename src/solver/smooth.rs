@@ -9,8 +9,7 @@ use crate::model::{AxisSlot, Model};
 
 /// Slower than this is still, rad/s or m/s.
 const STILL: f64 = 1e-12;
-/// Viscous terms must be slower than this share of 1/h. The classical method of order 4 is stable to 2.8; the rate is
-/// taken with the base of the axis held, which underestimates it.
+/// Viscous terms must be slower than this share of 1/h. The classical method of order 4 is stable to 2.8.
 const STIFF: f64 = 0.5;
 
 impl AxisSet {
@@ -28,32 +27,39 @@ impl AxisSet {
         self.update_rates(m, s.angles);
         clear_balls(ws);
         for (i, axis) in m.axes.iter().enumerate() {
-            let turning = match axis.slot {
+            self.turning[i] = match axis.slot {
                 AxisSlot::Euler { group, angle } if self.place[i] % 2 == 1 || self.rotor[i] > 0.0 => {
                     self.rates[group].gradient[angle].dot(self.turning(m, s, group))
                 }
                 _ => 0.0,
             };
             let input = if self.place[i] % 2 == 1 {
-                Input::Locked(turning)
+                Input::Locked(self.turning[i])
             } else {
                 let (_, v) = self.axis_state(m, axis, s);
                 let torque = self.laws[i].on_segment(self.place[i] / 2, v);
-                Input::Sliding { torque: torque + self.rotor[i] * turning, diagonal: self.rotor[i] }
+                Input::Sliding { torque: torque + self.rotor[i] * self.turning[i], diagonal: self.rotor[i] }
             };
             self.write(m, ws, i, input);
         }
     }
 
-    /// After a stage: do the reactions of the standing axes fit, and is no viscous term too stiff for a step of `h`?
-    pub fn stage_fits(&self, m: &Model, ws: &Workspace<f64>, h: f64, qdd: &[f64]) -> bool {
+    /// After a stage: do the reactions of the standing axes fit?
+    pub fn stage_fits(&self, m: &Model, ws: &Workspace<f64>, qdd: &[f64]) -> bool {
+        (0..self.laws.len()).filter(|i| self.place[*i] % 2 == 1).all(|i| {
+            self.laws[i].leaves_riser(self.place[i] / 2, self.riser_torque(m, ws, i, qdd)) == 0
+        })
+    }
+
+    /// After the first stage, whose state is `q` (nq): is no viscous term too stiff for a step of `h`?
+    pub fn is_soft_enough(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], h: f64) -> bool {
+        if let Some(answers) = &mut self.answers {
+            answers.forget();
+        }
         (0..self.laws.len()).all(|i| {
-            let (law, place) = (&self.laws[i], self.place[i]);
-            if place % 2 == 1 {
-                return law.leaves_riser(place / 2, self.riser_torque(m, ws, i, qdd)) == 0;
-            }
-            let slope = law.segments[place / 2].slope;
-            slope == 0.0 || slope * h * self.mobility(m, ws, i) < STIFF
+            let slope = self.laws[i].segments[self.place[i] / 2].slope;
+            let sliding = self.place[i].is_multiple_of(2) && slope > 0.0;
+            !sliding || slope * h * self.whole_mobility(m, ws, q, i) < STIFF
         })
     }
 
