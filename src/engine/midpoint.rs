@@ -19,6 +19,8 @@ const CONTRACTION: f64 = 0.5;
 /// When its passes are used up, a step whose middle moves by less than this is taken; one that had enough of them is halved.
 const COARSE: f64 = 1e-6;
 const ENOUGH: u32 = 5;
+/// The same for a step whose axes do not all fit their laws: shorter ones would not make them fit.
+const ROUGH: f64 = 1e-2;
 /// A step is halved at most this many times.
 const DEEPEST: u32 = 6;
 
@@ -83,7 +85,6 @@ impl Rbx {
                 End::Unsettled => {
                     report.unsettled = true;
                     self.take(m, mid, part.h);
-                    self.guard(m, mid, part.gravity, report);
                 }
                 End::NoContraction => {
                     report.unsettled = true;
@@ -128,9 +129,10 @@ impl Rbx {
                 return End::NoContraction;
             }
             if !wanted {
+                let near = if misfits == 0 { COARSE } else { ROUGH };
                 return match misfits {
                     0 if moved <= COARSE => End::Converged,
-                    _ if moved > COARSE && pass >= ENOUGH => End::NoContraction,
+                    _ if moved > near && pass >= ENOUGH => End::NoContraction,
                     _ => End::Unsettled,
                 };
             }
@@ -146,7 +148,12 @@ impl Rbx {
         let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true };
         self.axes.prepare(m, &start, s.effects);
         let at = (mid.start.as_ref(), &mid.start.v[..]);
-        self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, false));
+        for pass in 1..=s.passes.max(ENOUGH) {
+            let wanted = pass < s.passes.max(ENOUGH);
+            if self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, wanted)) == 0 {
+                break;
+            }
+        }
         self.take(m, mid, s.h);
         mid.forget();
     }

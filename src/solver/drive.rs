@@ -8,7 +8,7 @@ use super::Mode;
 use super::law::{AxisInput, Knot, SERVO, Segment, WALL_LEFT, WALL_RIGHT, bounded};
 
 /// A servo that wants less than this has arrived, rad/s or m/s.
-const STILL: f64 = 1e-9;
+const STILL: f64 = 1e-11;
 /// No-load speed that stands for less, rad/s or m/s.
 const SLOWEST: f64 = 1e-9;
 
