@@ -367,3 +367,73 @@ fn drives_change_while_running() {
         assert_eq!(w.drive(0), Some(&braked));
     }
 }
+
+/// A servo brakes in time against its weight and with it, and shows the torque that friction leaves it: gravity is in its
+/// braking parabola.
+#[test]
+fn a_servo_brakes_against_gravity() {
+    let (m_l, inertia, friction) = (2.0, 0.51, 1.5);
+    for (from, to) in [(1.4, -1.2), (-1.4, 1.2), (0.1, 1.5), (2.5, 0.4)] {
+        let mut m = tree(&[JointType::Revolute], true, 1);
+        let b = &mut m.bodies[1];
+        b.tree_r.r = [V3::new(0.0, -1.0, 0.0), V3::new(0.0, 0.0, 1.0), V3::new(-1.0, 0.0, 0.0)];
+        (b.mass, b.mc, b.inertia) = (2.0, V3::new(m_l / 2.0, 0.0, 0.0), Default::default());
+        (b.inertia.xx, b.inertia.yy, b.inertia.zz) = (0.01, inertia, inertia);
+        let fast = DriveLimits { max_torque: 14.0, servo_time: 1e-4, ..DriveLimits::default() };
+        m.axes[0].drive = DriveLimits { static_resistance: friction, dynamic_resistance: friction, ..fast };
+        m.effects = Effects::called_for(&m);
+        let h = 1e-3;
+        let mut w = world(&m, h, 0.0);
+        let mut s = State::initial(&m);
+        s.set_axis(&m, 0, from, 0.0);
+        w.set_initial_state(s);
+        w.set_commands(&[AxisCommand::servo(to)]).unwrap();
+        let side = f64::signum(to - from);
+        let mut beyond = f64::NEG_INFINITY;
+        for _ in 0..2000 {
+            w.advance();
+            let (q, v) = w.state().axis(&m, 0);
+            beyond = beyond.max(side * (q - to));
+            assert!(effort(&w).abs() <= 14.0 + 1e-9 && v.abs() < 20.0);
+        }
+        // The load changes by up to m g l v h within a step: what the parabola of the last step does not know.
+        let unknown = m_l / 2.0 * 9.80665 * 10.0 * h / inertia * h;
+        assert!(beyond <= unknown, "{from} {to}: {beyond} beyond the target");
+        assert!((w.state().axis(&m, 0).0 - to).abs() <= 1e-9);
+        let weight = m_l / 2.0 * 9.80665 * to.sin();
+        let held = (weight.abs() - friction).max(0.0) * weight.signum();
+        assert!((effort(&w) - held).abs() <= 1e-6, "{} {held}", effort(&w));
+    }
+}
+
+/// Static friction of one axis is not lost because the first guess of another one was wrong: the heavy flywheel that stands
+/// feels at most what the servo on it can give.
+#[test]
+fn static_friction_beside_a_saturated_servo() {
+    let mut m = tree(&[JointType::Revolute; 2], true, 1);
+    for b in &mut m.bodies[1..] {
+        (b.tree_r, b.tree_p) = (realnoid::math::M3::identity(), V3::default());
+        (b.mass, b.mc, b.inertia) = (1.0, V3::default(), Default::default());
+        (b.inertia.xx, b.inertia.yy, b.inertia.zz) = (J, J, J);
+    }
+    m.axes[0].drive = DriveLimits { static_resistance: 10.0, dynamic_resistance: 1.0, ..DriveLimits::default() };
+    m.axes[1].drive = DriveLimits { max_torque: 5.0, ..DriveLimits::default() };
+    m.effects = Effects::called_for(&m);
+    let mut w = world(&m, 0.001, 0.0);
+    for target in [0.0, 1.0, -1.0] {
+        w.set_commands(&[AxisCommand::IDLE, AxisCommand::servo(target)]).unwrap();
+        run(&mut w, 1.0);
+        assert_eq!(w.state().axis(&m, 0), (0.0, 0.0), "{target}");
+    }
+}
+
+/// A servo whose applied speed is 0 gives no torque forwards, and brakes; nothing diverges.
+#[test]
+fn a_servo_without_speed() {
+    let mut w = world(&wheel(motor()), 0.001, 0.0);
+    for speed in [0.0, 1e-310] {
+        w.set_commands(&[AxisCommand { speed, ..AxisCommand::servo(1.0) }]).unwrap();
+        let (q, v) = run(&mut w, 1.0);
+        assert!(q.abs() <= 1e-8 && v.abs() <= 1e-8 && w.stats().diverged_steps == 0);
+    }
+}

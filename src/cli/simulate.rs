@@ -148,7 +148,11 @@ impl<'a> Plan<'a> {
         let script = args.script.as_deref().map(read).transpose().map_err(usage)?.unwrap_or_default();
         let mut warnings = warnings(&loaded);
         warnings.extend(scene.pending);
+        warnings.extend(outside(world.model(), world.state()).map(|(_, said)| said + ": its stop pushes it back"));
         warnings.extend(beyond(&world));
+        if intervals == 0 {
+            warnings.push("the duration is less than half a control interval: no step is made".into());
+        }
         warnings.extend(script.warnings.iter().cloned());
         Ok(Self { args, world, script, intervals, every, warnings })
     }
@@ -223,10 +227,11 @@ impl<'a> Plan<'a> {
             "steps": s.steps,
             "rows": outcome.rows,
             "output": outcome.files,
-            "simulated_seconds": self.world.time(),
+            "simulated_seconds": self.simulated(),
             "cpu_seconds": cpu,
             "us_per_step": if s.steps > 0 { cpu * 1e6 / s.steps as f64 } else { 0.0 },
             "worst_penetration": 0.0,
+            "worst_stop_violation": s.worst_stop_violation,
             "peaks": outcome.peaks(self.world.model()),
             "finite": outcome.finite,
             "stopped": outcome.stopped,
@@ -240,6 +245,17 @@ impl<'a> Plan<'a> {
             "broken_joints": broken,
             "warnings": self.all_warnings(outcome),
         })
+    }
+
+    /// Simulated time, s; of a world that stands still, up to there.
+    fn simulated(&self) -> f64 {
+        let s = self.world.settings();
+        let step = interval(s) / f64::from(s.steps_per_interval);
+        if self.world.stats().diverged_steps > 0 {
+            self.world.stats().steps.saturating_sub(1) as f64 * step
+        } else {
+            self.world.time()
+        }
     }
 
     /// Those from before the run, and what the run had to tell.
@@ -268,7 +284,10 @@ fn counted(s: &Stats) -> [(u64, &'static str); 6] {
             "steps were made by implicit_midpoint, because an axis began or ceased to stand still, a servo was on its \
              way, a viscous term was stiff, or a joint is soft or a fixed one that may break",
         ),
-        (s.halvings, "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same"),
+        (
+            s.halvings,
+            "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same",
+        ),
         (s.unsettled_steps, "steps ended before the axis laws had settled: allow more --iterations"),
         (
             s.guarded_pieces,
@@ -352,10 +371,18 @@ fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, St
             [position, speed] => s.set_axis(m, axis, position, speed),
             _ => return Err(format!("--set {text}: must be {form}")),
         }
+        if given.contains(&axis) {
+            return Err(format!("--set {text}: axis '{name}' is already set"));
+        }
         given.push(axis);
     }
     s.couple_given(m, &given).map_err(|reason| format!("--set: {reason}"))?;
-    Ok(s)
+    let coupled = |axis: usize| m.couplings_in_force().iter().any(|c| c.leader == axis || c.follower == axis);
+    let refused = outside(m, &s).find(|(axis, _)| coupled(*axis));
+    match refused {
+        Some((_, said)) => Err(format!("--set: {said}; it is coupled to another axis, so it must start inside")),
+        None => Ok(s),
+    }
 }
 
 /// Simulated time of a control interval, s.
@@ -383,8 +410,22 @@ fn schedule(args: &SimulateArgs, s: &Settings) -> Result<(u64, u64), String> {
     Ok(((args.duration / interval).round() as u64, ratio.round() as u64))
 }
 
+/// Axes that start outside their range.
+fn outside<'a>(m: &'a Model, s: &'a State) -> impl Iterator<Item = (usize, String)> + 'a {
+    m.axes.iter().enumerate().filter(|_| m.effects.limits).filter_map(|(i, a)| {
+        let (q, _) = s.axis(m, i);
+        let slack = 1e-12 * (1.0 + q.abs());
+        (q < a.lower - slack || q > a.upper + slack)
+            .then(|| (i, format!("axis '{}' starts at {q}, outside its range {} to {}", a.name, a.lower, a.upper)))
+    })
+}
+
 /// What the axes cannot do of their commands.
 fn beyond(world: &World) -> Vec<String> {
+    if !world.model().effects.drives {
+        let commanded = world.commands().iter().any(|c| c.mode != crate::world::Mode::Idle);
+        return if commanded { vec!["the effect drives is off: commands have no effect".into()] } else { vec![] };
+    }
     let axes = world.model().axes.iter().enumerate().zip(world.commands());
     axes.filter_map(|((i, axis), command)| command.beyond(axis, world.drive(i)?)).collect()
 }

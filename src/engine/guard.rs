@@ -2,9 +2,9 @@
 //! explicit step would make energy out of nothing.
 //!
 //! Such a piece is made explicitly, and then the motion relative to the body as a whole is slowed down until the energy is
-//! what the drives and the weight have paid for. The momentum of the whole stays: the kinetic energy splits, without a cross
-//! term, into that of the locked body with the same momentum and the rest (König). Each such piece is counted, and what it
-//! took is added up.
+//! what the drives and the weight have paid for. The momentum of a robot on a free base stays: the kinetic energy splits, without
+//! a cross term, into that of the locked body with the same momentum and the rest (König). With a fixed base, or in several pieces,
+//! all motion is slowed down alike. Each such piece is counted, and what it took is added up.
 
 use super::midpoint::Midpoint;
 use super::rbx::{Rbx, State, StepReport};
@@ -40,8 +40,12 @@ impl Guard {
 impl Rbx {
     /// Slows the state down to the energy that it may have, coming from `mid.start`.
     pub(super) fn guard(&mut self, m: &Model, mid: &mut Midpoint, gravity: [f64; 3], report: &mut StepReport) {
-        let before = mid.guard.energy(m, &mid.start, gravity);
-        let after = mid.guard.energy(m, &self.state, gravity);
+        let mut before = mid.guard.energy(m, &mid.start, gravity);
+        let mut after = mid.guard.energy(m, &self.state, gravity);
+        for (i, rotor) in self.axes.rotors().iter().enumerate().filter(|(_, rotor)| **rotor > 0.0) {
+            before.kinetic += 0.5 * rotor * mid.start.axis(m, i).1.powi(2);
+            after.kinetic += 0.5 * rotor * self.state.axis(m, i).1.powi(2);
+        }
         let (by_start, by_end) = self.axes.paid();
         let locked = Locked::of(m, &mid.guard.kinematics);
         let rest = after.kinetic - locked.as_ref().map_or(0.0, |l| l.kinetic);

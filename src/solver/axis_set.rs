@@ -9,8 +9,8 @@
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
 use super::couplings::Couplings;
-use super::mobility::Answers;
 use super::law::{FRICTION, Law};
+use super::mobility::Answers;
 use super::{AxisCommand, AxisInput, Brakes};
 use crate::dynamics::{Workspace, aba_hybrid};
 use crate::math::V3;
@@ -95,6 +95,8 @@ pub struct AxisSet {
     /// Work since the start.
     pub work: Work,
     pub(super) paid: (f64, f64),
+    /// By how much an axis was outside its range at most, at the start of a step; rad or m.
+    pub worst_stop: f64,
     pub(super) mean: bool,
     best: usize,
     patience: u32,
@@ -128,6 +130,7 @@ impl AxisSet {
             answers: Some(Box::new(Answers::new(model))),
             work: Work::default(),
             paid: (0.0, 0.0),
+            worst_stop: 0.0,
             mean: false,
             best: usize::MAX,
             patience: PATIENCE,
@@ -140,7 +143,7 @@ impl AxisSet {
         self.effort.fill(0.0);
         self.stiff.fill(false);
         self.brakes.fill(Brakes::default());
-        self.work = Work::default();
+        (self.work, self.worst_stop) = (Work::default(), 0.0);
         if let Some(couplings) = &mut self.couplings {
             couplings.reset();
         }
@@ -153,6 +156,9 @@ impl AxisSet {
         for (i, axis) in m.axes.iter().enumerate() {
             let (q, v) = self.axis_state(m, axis, start.state);
             self.speed[i] = v;
+            if effects.limits {
+                self.worst_stop = self.worst_stop.max(axis.lower - q).max(q - axis.upper);
+            }
             self.rotor[i] = if effects.rotor_inertia { self.drives[i].rotor_inertia } else { 0.0 };
             let ungraspable = self.ungraspable(axis);
             let input = AxisInput {
@@ -235,7 +241,11 @@ impl AxisSet {
             if place % 2 == 1 {
                 self.moves[i] = law.leaves_riser(place / 2, self.riser_torque(m, ws, i, qdd));
                 let moves = usize::from(self.moves[i] != 0);
-                if law.stiction > 0.0 { breaking += moves } else { count += moves }
+                if law.stiction > 0.0 {
+                    breaking += moves
+                } else {
+                    count += moves
+                }
                 continue;
             }
             let stiff = law.segments[place / 2].slope * h * self.mobility(m, ws, i) > 1.0;
@@ -316,6 +326,11 @@ impl AxisSet {
     /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.
     pub fn paid(&self) -> (f64, f64) {
         self.paid
+    }
+
+    /// Per axis: inertia of the rotor that counts, kg·m² or kg.
+    pub fn rotors(&self) -> &[f64] {
+        &self.rotor
     }
 
     /// True if no axis has been moved to another part of its law in the last pass.

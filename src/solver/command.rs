@@ -57,6 +57,9 @@ impl AxisCommand {
                 self.target
             ));
         }
+        if self.mode == Mode::Servo && drive.max_torque == f64::INFINITY && !self.torque.is_finite() {
+            return Some(format!("axis '{name}': nothing bounds the torque of its servo; give its drive a max_torque"));
+        }
         let speed = if self.mode == Mode::Servo { drive.max_speed } else { drive.no_load_speed };
         beyond("torque", self.torque, drive.max_torque).or_else(|| beyond("speed", self.speed, speed))
     }

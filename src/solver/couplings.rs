@@ -7,8 +7,8 @@ use super::rows::{Kind, Rows};
 use crate::dynamics::{Push, Response, Workspace};
 use crate::model::{AxisSlot, Coupling, Model};
 
-/// Share of a follower's deviation that one step takes back. The rows keep the velocities together to rounding, so it has
-/// only rounding and the curvature of a 3DOF group's angles to take back, and adds no energy beyond that.
+/// Share of a follower's deviation that one step takes back, by a speed. The rows keep the velocities together to rounding, so it
+/// has only rounding, the curvature of a 3DOF group's angles and what an unsettled step has left to take back.
 const ERP: f64 = 0.2;
 /// The same in the stages of an explicit step: time constant of a critically damped return, in steps.
 const RETURN: f64 = 10.0;
@@ -166,7 +166,8 @@ impl AxisSet {
         let Some(mut couplings) = self.couplings.take() else { return };
         for pair in &mut couplings.pairs {
             let motion = |axis: usize| Motion { q: self.axis_state(m, &m.axes[axis], start.state).0, v: 0.0, a: 0.0 };
-            pair.back = ERP * deviation(pair, &motion(pair.coupling.follower), &motion(pair.coupling.leader)) / start.h;
+            let error = deviation(pair, &motion(pair.coupling.follower), &motion(pair.coupling.leader));
+            pair.back = ERP * error / start.h;
         }
         self.couplings = Some(couplings);
     }

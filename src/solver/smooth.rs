@@ -46,9 +46,9 @@ impl AxisSet {
 
     /// After a stage: do the reactions of the standing axes fit?
     pub fn stage_fits(&self, m: &Model, ws: &Workspace<f64>, qdd: &[f64]) -> bool {
-        (0..self.laws.len()).filter(|i| self.place[*i] % 2 == 1).all(|i| {
-            self.laws[i].leaves_riser(self.place[i] / 2, self.riser_torque(m, ws, i, qdd)) == 0
-        })
+        (0..self.laws.len())
+            .filter(|i| self.place[*i] % 2 == 1)
+            .all(|i| self.laws[i].leaves_riser(self.place[i] / 2, self.riser_torque(m, ws, i, qdd)) == 0)
     }
 
     /// After the first stage, whose state is `q` (nq): is no viscous term too stiff for a step of `h`?

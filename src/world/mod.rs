@@ -34,6 +34,8 @@ pub struct Stats {
     pub guarded_pieces: u64,
     /// What they lost, J.
     pub guarded_energy: f64,
+    /// By how much an axis was outside its range at most (a soft stop, a start there, an angle of a 3DOF group); rad or m.
+    pub worst_stop_violation: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
     pub pole_steps: u64,
     /// Steps whose result was not finite and was not taken. The world stands still from the first one on.
@@ -206,6 +208,7 @@ impl World {
         s.halvings += u64::from(report.halvings);
         s.guarded_pieces += u64::from(report.guarded);
         s.guarded_energy += report.guarded_energy;
+        s.worst_stop_violation = self.engine.axes.worst_stop;
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
     }
@@ -284,13 +287,17 @@ impl World {
     /// Kinetic and potential energy, J; rotors count with their speed relative to the joint.
     pub fn energy(&self) -> Energy {
         let mut e = energy(&self.model, &self.kinematics, self.gravity());
-        if self.effects.rotor_inertia {
-            for (i, drive) in self.engine.axes.drives.iter().enumerate() {
-                let (_, speed) = self.state().axis(&self.model, i);
-                e.kinetic += 0.5 * drive.rotor_inertia * speed * speed;
-            }
-        }
+        e.kinetic += self.rotor_energy();
         e
+    }
+
+    /// Of the rotors, with their speed relative to the joint, J.
+    fn rotor_energy(&self) -> f64 {
+        if !self.effects.rotor_inertia {
+            return 0.0;
+        }
+        let speed = |i: usize| self.state().axis(&self.model, i).1;
+        self.engine.axes.drives.iter().enumerate().map(|(i, d)| 0.5 * d.rotor_inertia * speed(i).powi(2)).sum()
     }
 
     /// Work of the drives and losses at the axes since the start or the last reset, J. With [`World::energy`] it shows the

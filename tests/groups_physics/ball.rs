@@ -169,3 +169,37 @@ fn stops_act_about_their_own_angle() {
         }
     }
 }
+
+/// Rotors on H, P or B: a free spin keeps the energy of body and rotor to the order of the method, which is that of the axes'
+/// turning as well.
+#[test]
+fn rotors_of_a_group_keep_the_energy() {
+    for (axis, integrator, order) in [
+        (0, Integrator::ImplicitMidpoint, 2),
+        (1, Integrator::ImplicitMidpoint, 2),
+        (2, Integrator::ImplicitMidpoint, 2),
+        (0, Integrator::SemiImplicitEuler, 1),
+        (2, Integrator::Rk4, 4),
+    ] {
+        let mut m = Model::clone(&ball(BRICK, false));
+        m.axes[axis].drive.rotor_inertia = 0.05;
+        m.effects.rotor_inertia = true;
+        let m = Arc::new(m);
+        let error = |h: f64| {
+            let mut w = spinning(&m, integrator, h, [0.3, 0.4, 0.2], V3::new(1.0, 0.7, 2.0));
+            let (start, mut worst) = (w.energy().kinetic, 0.0_f64);
+            for _ in 0..(0.5 / h).round() as usize {
+                w.advance();
+                worst = worst.max((w.energy().kinetic / start - 1.0).abs());
+            }
+            worst
+        };
+        let (coarse, fine) = (error(0.002), error(0.001));
+        println!("{axis} {integrator:?}: {coarse:.2e} {fine:.2e}");
+        assert!(
+            fine <= 1e-11 || coarse / fine >= 0.8 * f64::from(1 << order),
+            "{axis} {integrator:?}: {coarse} {fine}"
+        );
+        assert!(fine <= 0.02, "{axis} {integrator:?}: {fine}");
+    }
+}
