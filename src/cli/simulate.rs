@@ -150,7 +150,7 @@ impl<'a> Plan<'a> {
         warnings.extend(scene.pending);
         warnings.extend(outside(world.model(), world.state()).map(|(_, said)| said + ": its stop pushes it back"));
         warnings.extend(beyond(&world));
-        if intervals == 0 {
+        if intervals == 0 && args.duration > 0.0 {
             warnings.push("the duration is less than half a control interval: no step is made".into());
         }
         warnings.extend(script.warnings.iter().cloned());
