@@ -62,12 +62,6 @@ impl<'a> Cut<'a> {
         self.index[body].filter(|_| body != self.body)
     }
 
-    /// The body before whose joint has this velocity coordinate.
-    fn owner(&self, v: usize) -> usize {
-        let owns = |b: &Body| (b.v..b.v + b.joint.nv()).contains(&v);
-        self.m.bodies.iter().skip(1).position(owns).map_or(0, |n| n + 1)
-    }
-
     /// The bodies afterwards; counts the coordinates of `left`.
     fn bodies(&self, left: &mut Model) -> Vec<Body> {
         let staying = self.m.bodies.iter().enumerate().filter(|(i, _)| self.index[*i].is_some());
@@ -112,7 +106,7 @@ impl<'a> Cut<'a> {
     }
 
     fn soft(&self, left: &Model, soft: &SoftDof) -> Option<SoftDof> {
-        let body = &left.bodies[self.intact(self.owner(soft.v))?];
+        let body = &left.bodies[self.intact(self.m.body_of(soft.v)?)?];
         Some(SoftDof { q: body.q, v: body.v, ..*soft })
     }
 
@@ -120,7 +114,7 @@ impl<'a> Cut<'a> {
     fn slot(&self, left: &Model, axis: usize, s: &State) -> AxisSlot {
         let slot = match self.m.axes[axis].slot {
             AxisSlot::Scalar { q, v } => {
-                let owner = self.owner(v);
+                let owner = self.m.body_of(v).unwrap_or(0);
                 let (old, new) = (&self.m.bodies[owner], self.intact(owner).map(|n| &left.bodies[n]));
                 new.map(|new| AxisSlot::Scalar { q: new.q + q - old.q, v: new.v + v - old.v })
             }

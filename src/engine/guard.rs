@@ -42,10 +42,8 @@ impl Rbx {
     pub(super) fn guard(&mut self, m: &Model, mid: &mut Midpoint, gravity: [f64; 3], report: &mut StepReport) {
         let mut before = mid.guard.energy(m, &mid.start, gravity);
         let mut after = mid.guard.energy(m, &self.state, gravity);
-        for (i, rotor) in self.axes.rotors().iter().enumerate().filter(|(_, rotor)| **rotor > 0.0) {
-            before.kinetic += 0.5 * rotor * mid.start.axis(m, i).1.powi(2);
-            after.kinetic += 0.5 * rotor * self.state.axis(m, i).1.powi(2);
-        }
+        before.kinetic += mid.start.rotor_energy(m, self.axes.rotors());
+        after.kinetic += self.state.rotor_energy(m, self.axes.rotors());
         let (by_start, by_end) = self.axes.paid();
         let locked = Locked::of(m, &mid.guard.kinematics);
         let rest = after.kinetic - locked.as_ref().map_or(0.0, |l| l.kinetic);

@@ -110,7 +110,7 @@ impl Rbx {
     ) -> End {
         let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
-        write_softs(m, &mut self.ws, &start, s.effects, self.whole_step);
+        write_softs(m, &mut self.ws, &start, s.effects);
         self.qdd.copy_from_slice(&mid.guess);
         self.mean_velocities(mid, s.h);
         self.half_way(m, mid, s.h);
@@ -147,13 +147,8 @@ impl Rbx {
     fn explicit_piece(&mut self, m: &Model, mid: &mut Midpoint, commands: &[AxisCommand], s: &StepSettings) {
         let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true };
         self.axes.prepare(m, &start, s.effects);
-        let at = (mid.start.as_ref(), &mid.start.v[..]);
-        for pass in 1..=s.passes.max(ENOUGH) {
-            let wanted = pass < s.passes.max(ENOUGH);
-            if self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, wanted)) == 0 {
-                break;
-            }
-        }
+        let bounds = (s.gravity, s.h, s.passes.max(ENOUGH));
+        self.axes.settle(m, &mut self.ws, mid.start.as_ref(), bounds, &mut self.qdd);
         self.take(m, mid, s.h);
         mid.forget();
     }
@@ -172,9 +167,7 @@ impl Rbx {
 
     /// Moves half-way with the speeds that the coordinates have by the accelerations.
     fn half_way(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
-        for k in 0..m.nv {
-            mid.u[k] = mid.start.v[k] + self.axes.weight[k] * h * self.qdd[k];
-        }
+        self.take_speeds(mid, h);
         move_coordinates(m, &mid.start.q, &mid.u, 0.5 * h, &mut mid.middle.q);
         if !m.eulers.is_empty() {
             mid.middle.angles.copy_from_slice(&mid.start.angles);
@@ -182,15 +175,22 @@ impl Rbx {
         }
     }
 
+    /// The speeds with which the coordinates move, by the accelerations.
+    fn take_speeds(&self, mid: &mut Midpoint, h: f64) {
+        let rates = mid.start.v.iter().zip(self.qdd.iter().zip(&self.axes.weight));
+        for (u, (v0, (a, weight))) in mid.u.iter_mut().zip(rates) {
+            *u = v0 + weight * h * a;
+        }
+    }
+
     /// Takes the step with the accelerations of the last pass.
     fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
         self.axes.finish(m, &self.ws, &mid.middle.q, (h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
-        for k in 0..m.nv {
-            let change = h * self.qdd[k];
-            self.state.v[k] = mid.start.v[k] + change;
-            mid.u[k] = mid.start.v[k] + self.axes.weight[k] * change;
+        for (v, (v0, a)) in self.state.v.iter_mut().zip(mid.start.v.iter().zip(&self.qdd)) {
+            *v = v0 + h * a;
         }
+        self.take_speeds(mid, h);
         self.axes.round_speeds(m, &mut self.state.v);
         move_coordinates(m, &mid.start.q, &mid.u, h, &mut self.state.q);
         self.state.read_angles(m);

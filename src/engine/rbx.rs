@@ -5,7 +5,7 @@ use super::rk4::Stages;
 use crate::dynamics::{Workspace, exponential_step, normalize};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, Outcome, StateRef, StepStart, write_softs};
+use crate::solver::{AxisCommand, AxisSet, StateRef, StepStart, write_softs};
 
 /// How the state is advanced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,6 +77,12 @@ impl State {
             }
             AxisSlot::Apart { position } => (position, 0.0),
         }
+    }
+
+    /// Kinetic energy of rotors of these inertias (kg·m² or kg, per axis) with their speeds relative to the joints, J.
+    pub fn rotor_energy(&self, m: &Model, rotors: impl Iterator<Item = f64>) -> f64 {
+        let turning = rotors.enumerate().filter(|(_, inertia)| *inertia > 0.0);
+        turning.map(|(i, inertia)| 0.5 * inertia * self.axis(m, i).1.powi(2)).sum()
     }
 
     /// Acceleration of an axis, given those of the velocity coordinates (nv).
@@ -274,7 +280,7 @@ impl Rbx {
                     self.midpoint_step(m, &mut midpoint, commands, s, &mut report);
                     self.midpoint = Some(midpoint);
                 }
-                None => report.unsettled = !self.euler(m, commands, s, &mut report).settled,
+                None => self.euler(m, commands, s, &mut report),
             }
         }
         if self.axes.push_back(m, &mut self.state.q, &self.state.angles) {
@@ -287,27 +293,17 @@ impl Rbx {
         report
     }
 
-    fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> Outcome {
+    fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) {
         let at = self.state.as_ref();
         let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
-        write_softs(m, &mut self.ws, &start, s.effects, self.whole_step);
-        let mut passes = 0;
-        let settled = loop {
-            passes += 1;
-            let wanted = passes < s.passes;
-            let out = (&mut self.qdd[..], wanted);
-            let misfits = self.axes.pass(m, &mut self.ws, (at, at.v), (s.gravity, s.h), out);
-            if misfits == 0 || !wanted {
-                break misfits == 0;
-            }
-        };
+        write_softs(m, &mut self.ws, &start, s.effects);
+        report.unsettled = !self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);
-        Outcome { passes, settled }
     }
 
     /// False, with the state as before, if the step is not smooth.

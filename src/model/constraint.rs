@@ -13,6 +13,16 @@ pub struct Softness {
 impl Softness {
     /// Of a coordinate that never moves: a fixed joint that may break.
     pub const HELD: Self = Self { erp: 0.0, cfm: 0.0 };
+
+    /// `h k + d` of a piece of `h` seconds, with the spring and the damper of the `whole` step; exactly 1/CFM for all of it.
+    pub fn hk_plus_d(&self, h: f64, whole: f64) -> f64 {
+        (1.0 - self.erp * (1.0 - h / whole)) / self.cfm
+    }
+
+    /// The spring k of a `whole` step, N·m/rad or N/m.
+    pub fn stiffness(&self, whole: f64) -> f64 {
+        self.erp / (self.cfm * whole)
+    }
 }
 
 /// One direction in which a soft joint yields: a coordinate of its own whose error is its position. With CFM 0 it does not

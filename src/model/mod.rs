@@ -227,6 +227,19 @@ pub struct Model {
 }
 
 impl Model {
+    /// The body whose joint has this velocity coordinate.
+    pub fn body_of(&self, v: usize) -> Option<usize> {
+        let holds = |b: &Body| (b.v..b.v + b.joint.nv()).contains(&v);
+        self.bodies.iter().skip(1).position(holds).map(|b| b + 1)
+    }
+    /// The body that an axis carries, by itself or as part of a group; `None` if its joint has come apart.
+    pub fn carrier(&self, axis: usize) -> Option<usize> {
+        match self.axes[axis].slot {
+            AxisSlot::Scalar { v, .. } => self.body_of(v),
+            AxisSlot::Euler { group, .. } => Some(self.eulers[group].body),
+            AxisSlot::Apart { .. } => None,
+        }
+    }
     /// Total mass of all links, kg.
     pub fn mass(&self) -> f64 {
         self.links.iter().map(|l| l.mass).sum()

@@ -29,21 +29,11 @@ fn faults(m: &Model, axis: usize, singular: &[usize]) -> Vec<String> {
         let (resistance, torque) = (a.drive.static_resistance, a.drive.max_torque);
         told.push(format!("the drive never starts: static resistance {resistance}, maximum torque {torque}"));
     }
-    if body(m, a.slot).is_some_and(|body| singular.contains(&body)) {
+    if m.carrier(axis).is_some_and(|body| singular.contains(&body)) {
         told.push("what moves here has no inertia: the mass matrix is singular".into());
     }
     if matches!(a.slot, AxisSlot::Apart { .. }) {
         told.push("the joint has come apart".into());
     }
     told
-}
-
-fn body(m: &Model, slot: AxisSlot) -> Option<usize> {
-    match slot {
-        AxisSlot::Scalar { v, .. } => {
-            m.bodies.iter().skip(1).position(|b| (b.v..b.v + b.joint.nv()).contains(&v)).map(|b| b + 1)
-        }
-        AxisSlot::Euler { group, .. } => m.eulers.get(group).map(|e| e.body),
-        AxisSlot::Apart { .. } => None,
-    }
 }

@@ -80,6 +80,8 @@ pub struct Listener {
 
 struct Inbox<'a> {
     model: &'a Model,
+    /// Per axis: an excess has been said, so that no later command is looked at for that.
+    told: RefCell<Vec<bool>>,
     rules: RefCell<Rules>,
     commands: RefCell<Vec<AxisCommand>>,
     end: RefCell<CommandEnd>,
@@ -93,6 +95,7 @@ impl Listener {
         let axes = model.axes.iter().map(|a| (a.name.as_str(), a.switchable));
         let inbox = Inbox {
             model,
+            told: RefCell::new(vec![false; model.axes.len()]),
             rules: RefCell::new(Rules::new(axes, desk.values.allow_mode_switch())),
             commands: RefCell::new(desk.commands),
             end: RefCell::new(desk.end),
@@ -155,9 +158,13 @@ impl Inbox<'_> {
 
     /// Says, once per axis, that a command asks for more than its drive has.
     fn warn_of_excess(&self, commands: &[AxisCommand]) {
-        for (axis, command) in self.model.axes.iter().zip(commands) {
+        let mut told = self.told.borrow_mut();
+        for ((axis, command), told) in
+            self.model.axes.iter().zip(commands).zip(told.iter_mut()).filter(|(_, told)| !**told)
+        {
             if let Some(excess) = command.beyond(axis, &axis.drive) {
                 self.log.warn_once(&format!("beyond {}", axis.name), format!("{excess} (said once per axis)"));
+                *told = true;
             }
         }
     }

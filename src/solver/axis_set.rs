@@ -19,15 +19,6 @@ use crate::model::{Axis, AxisSlot, DriveLimits, Effects, EulerRates, Model};
 /// Passes that may move all axes at once without getting better.
 const PATIENCE: u32 = 3;
 
-/// What a solve came to.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Outcome {
-    /// Passes of the hybrid dynamics.
-    pub passes: u32,
-    /// Every axis fits its law.
-    pub settled: bool,
-}
-
 /// A state as the solver sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct StateRef<'a> {
@@ -104,6 +95,14 @@ pub struct AxisSet {
     pub(super) couplings: Option<Box<Couplings>>,
     /// `None` only while it is used.
     pub(super) answers: Option<Box<Answers>>,
+}
+
+impl Work {
+    /// Books the torque of a drive, as part of the total one of its axis, along a way in rad or m.
+    pub(super) fn book(&mut self, drive: f64, total: f64, way: f64) {
+        self.drives += drive * way;
+        self.losses -= (total - drive) * way;
+    }
 }
 
 impl AxisSet {
@@ -232,6 +231,19 @@ impl AxisSet {
         misfits
     }
 
+    /// At most `passes` passes at the state at the start of a step; true if every axis fits its law after one of them.
+    pub fn settle(
+        &mut self,
+        m: &Model,
+        ws: &mut Workspace<f64>,
+        at: StateRef,
+        (gravity, h, passes): ([f64; 3], f64, u32),
+        qdd: &mut [f64],
+    ) -> bool {
+        let passes = passes.max(1);
+        (1..=passes).any(|pass| self.pass(m, ws, (at, at.v), (gravity, h), (&mut *qdd, pass < passes)) == 0)
+    }
+
     /// Notes for every axis to which side it leaves its part of the law; returns how many do.
     fn misfits(&mut self, m: &Model, ws: &Workspace<f64>, (h, qdd): (f64, &[f64])) -> usize {
         let (mut count, mut breaking) = (0, 0);
@@ -317,9 +329,7 @@ impl AxisSet {
             self.effort[i] = effort;
             self.paid.0 += 0.5 * h * total * self.speed[i];
             self.paid.1 += 0.5 * h * total * end;
-            let way = 0.5 * h * (self.speed[i] + end);
-            self.work.drives += effort * way;
-            self.work.losses -= (total - effort) * way;
+            self.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
         }
     }
 
@@ -329,8 +339,8 @@ impl AxisSet {
     }
 
     /// Per axis: inertia of the rotor that counts, kg·m² or kg.
-    pub fn rotors(&self) -> &[f64] {
-        &self.rotor
+    pub fn rotors(&self) -> impl Iterator<Item = f64> {
+        self.rotor.iter().copied()
     }
 
     /// True if no axis has been moved to another part of its law in the last pass.

@@ -65,7 +65,7 @@ pub struct Stage {
 
 /// The joint of an axis.
 #[derive(Clone, Copy, Debug)]
-struct Seat {
+pub(super) struct Seat {
     body: usize,
     /// Which of the joint's velocities; an angle of a group uses all.
     index: usize,
@@ -147,16 +147,15 @@ fn deviation(pair: &Pair, follower: &Motion, leader: &Motion) -> f64 {
 }
 
 impl Seat {
-    fn of(m: &Model, axis: usize) -> Option<Self> {
-        match m.axes[axis].slot {
-            AxisSlot::Apart { .. } => None,
-            AxisSlot::Euler { group, .. } => Some(Self { body: m.eulers[group].body, index: 0 }),
-            AxisSlot::Scalar { v, .. } => {
-                let carries = |i: &usize| (m.bodies[*i].v..m.bodies[*i].v + m.bodies[*i].joint.nv()).contains(&v);
-                let body = (1..m.bodies.len()).find(carries)?;
-                Some(Self { body, index: v - m.bodies[body].v })
-            }
-        }
+    /// `None` if the joint has come apart.
+    pub fn of(m: &Model, axis: usize) -> Option<Self> {
+        let body = m.carrier(axis)?;
+        let index = if let AxisSlot::Scalar { v, .. } = m.axes[axis].slot { v - m.bodies[body].v } else { 0 };
+        Some(Self { body, index })
+    }
+
+    pub fn body(&self) -> usize {
+        self.body
     }
 }
 
@@ -348,7 +347,8 @@ impl AxisSet {
         pair.slack = AGREE * speeds + ROUNDING * positions;
     }
 
-    fn push_of(&self, m: &Model, axis: usize, seat: Seat, factor: f64) -> Push {
+    /// The force that is `factor` along an axis.
+    pub(super) fn push_of(&self, m: &Model, axis: usize, seat: Seat, factor: f64) -> Push {
         let mut push = Push { body: seat.body, ..Push::default() };
         if let AxisSlot::Euler { group, angle } = m.axes[axis].slot {
             let g = self.rates[group].gradient[angle] * factor;

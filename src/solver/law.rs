@@ -70,7 +70,7 @@ pub struct Law {
     pub(super) stiction: f64,
     /// The same for an axis that stood at the start of the step, 0 for others.
     stood: f64,
-    /// Soft stops: their stiffness, and the speeds at which they begin.
+    /// Soft stops: their torque per speed, and the speeds at which they begin.
     soft: (f64, f64, f64),
     /// Outside its range: by how much it is put back after the step, rad or m, signed.
     pub(super) push: f64,
@@ -158,16 +158,14 @@ impl Law {
     fn stops(&mut self, input: &AxisInput, (h, whole): (f64, f64)) {
         let (axis, soft) = (input.axis, input.axis.stop.cfm > 0.0);
         let touching = AT_STOP * (1.0 + input.q.abs());
-        // Share of h k + d that is left of the whole step's, whose spring and damper a piece keeps.
-        let piece = 1.0 - axis.stop.erp * (1.0 - h / whole);
+        let slope = if soft { axis.stop.hk_plus_d(h, whole) } else { 0.0 };
         let room = |gap: f64| match gap {
             _ if gap.abs() <= touching => 0.0,
             _ if gap > 0.0 => gap / h,
-            _ if soft => axis.stop.erp * gap / (whole * piece),
+            _ if soft => axis.stop.stiffness(whole) * gap / slope,
             _ => 0.0,
         };
-        let stiffness = if soft { piece / axis.stop.cfm } else { 0.0 };
-        self.soft.0 = stiffness;
+        self.soft.0 = slope;
         for (gap, side, kind) in [(input.q - axis.lower, -1.0, LOWER), (axis.upper - input.q, 1.0, UPPER)] {
             if !gap.is_finite() {
                 continue;
@@ -179,8 +177,8 @@ impl Law {
                 self.soft.2 = speed;
             }
             if soft && kind == LOWER {
-                self.segments[0].slope += stiffness;
-                self.segments[0].intercept += stiffness * speed;
+                self.segments[0].slope += slope;
+                self.segments[0].intercept += slope * speed;
             }
             if !soft && gap < -touching {
                 self.push += side * axis.stop.erp * gap;
@@ -188,7 +186,7 @@ impl Law {
             self.in_soft_stop |= soft && gap <= 0.0;
             let wall = if kind == LOWER { WALL_LEFT } else { WALL_RIGHT };
             let kinds = if soft { kind } else { kind | wall };
-            self.insert(Knot { speed, drop: 0.0, steeper: side * stiffness, kinds });
+            self.insert(Knot { speed, drop: 0.0, steeper: side * slope, kinds });
         }
     }
 
@@ -340,9 +338,9 @@ impl Law {
         let beside = if speed > 0.0 { -self.friction } else { self.friction };
         match riser {
             Some((k, total)) if self.knots[k].kinds & SERVO != 0 => {
-                let (stiffness, lower, upper) = self.soft;
-                let soft_stop = stiffness * ((lower - speed).max(0.0) - (speed - upper).max(0.0));
-                let rest = total + self.damping * speed - if stiffness > 0.0 { soft_stop } else { 0.0 };
+                let (slope, lower, upper) = self.soft;
+                let soft_stop = slope * ((lower - speed).max(0.0) - (speed - upper).max(0.0));
+                let rest = total + self.damping * speed - if slope > 0.0 { soft_stop } else { 0.0 };
                 let held = self.friction + self.stiction;
                 let friction = if self.knots[k].kinds & FRICTION != 0 { bounded(rest, held) } else { beside };
                 let (low, high) = self.drive.range(speed);

@@ -19,7 +19,7 @@ mod smooth;
 mod soft;
 mod yielding;
 
-pub use axis_set::{AxisSet, Outcome, StateRef, StepStart, Work};
+pub use axis_set::{AxisSet, StateRef, StepStart, Work};
 pub use command::{AxisCommand, Mode};
 pub use cone::{ConeBlock, Plane, disc};
 pub use couplings::Stage as CouplingStage;

@@ -141,11 +141,6 @@ impl Rows {
         &mut self.rows[self.blocks[block].first + n]
     }
 
-    /// Changes what the impulses of a block may be.
-    pub fn set_kind(&mut self, block: usize, kind: Kind) {
-        self.blocks[block].kind = kind;
-    }
-
     /// Impulse of the only row of a block.
     pub(super) fn row_impulse(&self, block: usize) -> f64 {
         self.rows[self.blocks[block].first].impulse

@@ -74,8 +74,8 @@ impl AxisSet {
         })
     }
 
-    /// Ends an explicit step: remembers who stands, writes efforts and work. `ws` and `qdd` are those of the last stage, `way`
-    /// is h.
+    /// Ends an explicit step of `h` seconds at the state `s`: remembers who stands, writes efforts and work. `ws` and `qdd` are
+    /// those of the last stage.
     pub fn finish_smooth(&mut self, m: &Model, ws: &Workspace<f64>, (s, h): (StateRef, f64), qdd: &[f64]) {
         for (i, axis) in m.axes.iter().enumerate() {
             let (_, v) = self.axis_state(m, axis, s);
@@ -83,12 +83,11 @@ impl AxisSet {
             let standing = self.place[i] % 2 == 1;
             self.memory[i] = if standing { law.knots[k].kinds } else { 0 };
             let riser = standing.then(|| (k, self.riser_torque(m, ws, i, qdd)));
-            let mean = 0.5 * (self.speed[i] + v);
-            let total = if standing { 0.0 } else { law.on_segment(k, mean) };
-            let drive = if standing { 0.0 } else { law.drive_torque(mean, None) };
             self.effort[i] = law.drive_torque(v, riser);
-            self.work.drives += h * drive * mean;
-            self.work.losses -= h * (total - drive) * mean;
+            if !standing {
+                let mean = 0.5 * (self.speed[i] + v);
+                self.work.book(law.drive_torque(mean, None), law.on_segment(k, mean), h * mean);
+            }
         }
     }
 }

@@ -14,22 +14,19 @@ use super::{AxisSet, StepStart};
 use crate::dynamics::{DofIn, Workspace};
 use crate::model::{Effects, Model, SoftDof};
 
-/// Hands the directions in which joints yield to the hybrid dynamics, for all passes of a step, which may be a part of one of
-/// `whole` seconds. They are held where they are if the effect is off.
-pub fn write_softs(m: &Model, ws: &mut Workspace<f64>, start: &StepStart, effects: Effects, whole: f64) {
+/// Hands the directions in which joints yield to the hybrid dynamics, for all passes of a step. They are held where they are
+/// if the effect is off.
+pub fn write_softs(m: &Model, ws: &mut Workspace<f64>, start: &StepStart, effects: Effects) {
     for soft in &m.softs {
         let yields = effects.compliance && soft.softness.cfm > 0.0;
-        ws.dofs[soft.v] =
-            if yields { law(soft, start, whole) } else { DofIn::locked(-start.state.v[soft.v] / start.h) };
+        ws.dofs[soft.v] = if yields { law(soft, start) } else { DofIn::locked(-start.state.v[soft.v] / start.h) };
     }
 }
 
-fn law(soft: &SoftDof, start: &StepStart, whole: f64) -> DofIn<f64> {
-    let (erp, cfm, h) = (soft.softness.erp, soft.softness.cfm, start.h);
+fn law(soft: &SoftDof, start: &StepStart) -> DofIn<f64> {
+    let damping = soft.softness.hk_plus_d(start.h, start.whole);
     let (e, v) = (start.state.q[soft.q], start.state.v[soft.v]);
-    // h k + d; exactly 1/cfm for a whole step.
-    let damping = (1.0 - erp * (1.0 - h / whole)) / cfm;
-    DofIn::implicit(-(erp / (cfm * whole) * e + damping * v), h * damping)
+    DofIn::implicit(-(soft.softness.stiffness(start.whole) * e + damping * v), start.h * damping)
 }
 
 impl AxisSet {

@@ -296,8 +296,7 @@ impl World {
         if !self.effects.rotor_inertia {
             return 0.0;
         }
-        let speed = |i: usize| self.state().axis(&self.model, i).1;
-        self.engine.axes.drives.iter().enumerate().map(|(i, d)| 0.5 * d.rotor_inertia * speed(i).powi(2)).sum()
+        self.state().rotor_energy(&self.model, self.engine.axes.drives.iter().map(|d| d.rotor_inertia))
     }
 
     /// Work of the drives and losses at the axes since the start or the last reset, J. With [`World::energy`] it shows the

@@ -3,7 +3,7 @@
 use super::World;
 use crate::dynamics::{link_pose, normalize};
 use crate::math::{Mat3, Pose, Quat, Vec3};
-use crate::model::{AxisSlot, Body, JointType};
+use crate::model::{AxisSlot, JointType};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
 use std::sync::Arc;
 
@@ -80,13 +80,8 @@ impl World {
 
     fn floating_behind(&self, axis: usize) -> Option<usize> {
         let m = &self.model;
-        let own = match m.axes[axis].slot {
-            AxisSlot::Scalar { v, .. } => (1..m.bodies.len()).find(|i| holds(&m.bodies[*i], v))?,
-            AxisSlot::Euler { group, .. } => m.eulers[group].body,
-            AxisSlot::Apart { .. } => return None,
-        };
         let parent = |i: &usize| Some(m.bodies[*i].parent).filter(|p| *p > 0);
-        std::iter::successors(Some(own), parent).find(|i| m.bodies[*i].joint == JointType::Floating)
+        std::iter::successors(m.carrier(axis), parent).find(|i| m.bodies[*i].joint == JointType::Floating)
     }
 
     fn move_floating(&mut self, body: usize, motion: &Pose) {
@@ -103,10 +98,6 @@ impl World {
     fn body_pose(&self, body: usize) -> Pose {
         pose(&Mat3::from(self.kinematics.r[body]), self.kinematics.p[body].into())
     }
-}
-
-fn holds(b: &Body, v: usize) -> bool {
-    (b.v..b.v + b.joint.nv()).contains(&v)
 }
 
 fn pose(r: &Mat3, p: Vec3) -> Pose {

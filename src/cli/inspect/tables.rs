@@ -2,7 +2,7 @@
 
 use super::super::load::Loaded;
 use super::Unit;
-use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, Effects, LinkFrame, Model};
+use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, Effects, JointType, LinkFrame, Model};
 use crate::monitor::{LinkValues, link_values};
 
 pub(super) fn tables(l: &Loaded, unit: Unit) -> String {
@@ -62,9 +62,7 @@ fn axis_row(m: &Model, a: &Axis) -> String {
     let joint = match a.slot {
         AxisSlot::Apart { .. } => "apart",
         AxisSlot::Euler { .. } => "3dof",
-        AxisSlot::Scalar { v, .. }
-            if m.bodies.iter().skip(1).any(|b| b.joint.nv() == 2 && (b.v..b.v + 2).contains(&v)) =>
-        {
+        AxisSlot::Scalar { v, .. } if m.body_of(v).is_some_and(|body| m.bodies[body].joint == JointType::Universal) => {
             "cardan"
         }
         AxisSlot::Scalar { .. } if a.kind == AxisKind::Linear => "slide",
