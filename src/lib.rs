@@ -15,6 +15,8 @@ pub mod model;
 
 pub mod dynamics;
 
+pub mod contact;
+
 pub mod solver;
 
 pub mod engine;

@@ -79,6 +79,7 @@ impl<'a> Builder<'a> {
             breakables: vec![],
             chains: chains(d),
             rigs: vec![],
+            colliders: vec![],
             effects: Effects::NONE,
         };
         let seats = vec![(0, Pose::identity()); d.links.len()];

@@ -5,6 +5,7 @@
 
 mod build;
 mod chain;
+mod collider;
 mod constraint;
 mod coupling;
 mod drive;
@@ -15,6 +16,7 @@ mod rig;
 
 pub use build::Base;
 pub use chain::LinkChain;
+pub use collider::{Collider, Surface};
 pub use constraint::{Breakable, Coupling, SoftDof, Softness};
 pub use drive::{DriveLimits, SERVO_TIME};
 pub use effects::{EFFECT_NAMES, Effects};
@@ -222,6 +224,8 @@ pub struct Model {
     pub chains: Vec<LinkChain>,
     /// Frames that mirror groups (J-4).
     pub rigs: Vec<Rig>,
+    /// What collides: shapes of links, and what stands still in the world.
+    pub colliders: Vec<Collider>,
     /// What the scene calls for.
     pub effects: Effects,
 }

@@ -3,6 +3,7 @@
 mod bounds;
 mod check;
 mod collision;
+mod contact_form;
 mod form;
 mod meshes;
 mod outline;
@@ -14,6 +15,7 @@ mod trimesh;
 pub use bounds::{Bounds, bounds};
 pub use check::ShapeFault;
 pub use collision::{CollisionSource, collision_shapes};
+pub use contact_form::ContactForm;
 pub use form::Shape;
 pub use meshes::{HeightGrid, LONGEST_FILE, MeshFault, Meshes, SearchPaths};
 pub use outline::{Lathe, Piece, lathe};

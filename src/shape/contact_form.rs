@@ -1,0 +1,54 @@
+//! What a shape is to contact.
+
+use super::TriMesh;
+use crate::math::Vec3;
+use std::sync::Arc;
+
+/// A shape that collides, in its own frame, metres; solids of revolution along z.
+#[derive(Clone, Debug)]
+pub enum ContactForm {
+    /// All of z ≤ 0.
+    HalfSpace,
+    /// About the origin.
+    Ball {
+        /// m.
+        radius: f64,
+    },
+    /// About the origin.
+    Cuboid {
+        /// Half of each edge, m.
+        half: [f64; 3],
+    },
+    /// The hull of two balls, at z = −half and z = half.
+    Capsule {
+        /// Radius at −half, m.
+        bottom: f64,
+        /// Radius at half, m.
+        top: f64,
+        /// m.
+        half: f64,
+    },
+    /// About the origin.
+    Ellipsoid {
+        /// Half axes, m.
+        radii: [f64; 3],
+    },
+    /// From z = −half to half.
+    Cylinder {
+        /// m.
+        radius: f64,
+        /// m.
+        half: f64,
+    },
+    /// From z = −half (base) to half (tip).
+    Cone {
+        /// Of the base, m.
+        radius: f64,
+        /// m.
+        half: f64,
+    },
+    /// The convex hull of these corners.
+    Hull(Arc<[Vec3]>),
+    /// A surface; only of what stands still.
+    Surface(Arc<TriMesh>),
+}
