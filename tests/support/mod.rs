@@ -57,6 +57,7 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         breakables: vec![],
         chains: vec![],
         rigs: vec![],
+        colliders: vec![],
         effects: Effects { gravity: true, drives: true, ..Effects::NONE },
     };
     m.bodies.push(body(&mut rng, 0, JointType::Revolute));
