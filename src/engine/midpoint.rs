@@ -110,7 +110,14 @@ impl Rbx {
         s: &StepSettings,
         report: &mut StepReport,
     ) -> End {
-        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true, sweeps: s.passes };
+        let start = StepStart {
+            state: mid.start.as_ref(),
+            commands,
+            h: s.h,
+            whole: self.whole_step,
+            mean: true,
+            sweeps: s.passes,
+        };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects);
         self.qdd.copy_from_slice(&mid.guess);
@@ -147,7 +154,14 @@ impl Rbx {
 
     /// The last resort: accelerations of the start of the piece.
     fn explicit_piece(&mut self, m: &Model, mid: &mut Midpoint, commands: &[AxisCommand], s: &StepSettings) {
-        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true, sweeps: s.passes };
+        let start = StepStart {
+            state: mid.start.as_ref(),
+            commands,
+            h: s.h,
+            whole: self.whole_step,
+            mean: true,
+            sweeps: s.passes,
+        };
         self.axes.prepare(m, &start, s.effects);
         let bounds = (s.gravity, s.h, s.passes.max(ENOUGH));
         self.axes.settle(m, &mut self.ws, mid.start.as_ref(), bounds, &mut self.qdd);

@@ -3,8 +3,19 @@
 use super::Model;
 
 /// Names for `--on` and `--off`, in the order of the fields of [`Effects`].
-pub const EFFECT_NAMES: [&str; 10] =
-    ["gravity", "damping", "friction", "limits", "drives", "rotor_inertia", "compliance", "mimic", "breaking", "contact"];
+pub const EFFECT_NAMES: [&str; 11] = [
+    "gravity",
+    "damping",
+    "friction",
+    "limits",
+    "drives",
+    "rotor_inertia",
+    "compliance",
+    "mimic",
+    "breaking",
+    "contact",
+    "deactivation",
+];
 
 /// One switch per effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +40,8 @@ pub struct Effects {
     pub breaking: bool,
     /// Contacts of bodies with each other and with the ground.
     pub contact: bool,
+    /// Bodies at rest leave the computation (`<deactivate>`).
+    pub deactivation: bool,
 }
 
 impl Effects {
@@ -46,6 +59,7 @@ impl Effects {
             mimic: !m.couplings.is_empty(),
             breaking: !m.breakables.is_empty(),
             contact: m.colliders.len() > 1,
+            deactivation: m.links.iter().any(|l| l.deactivation.is_some()),
         }
     }
     /// No effect at all.
@@ -60,6 +74,7 @@ impl Effects {
         mimic: false,
         breaking: false,
         contact: false,
+        deactivation: false,
     };
     /// The switches in the order of [`EFFECT_NAMES`].
     pub fn as_array(&self) -> [bool; EFFECT_NAMES.len()] {
@@ -74,6 +89,7 @@ impl Effects {
             self.mimic,
             self.breaking,
             self.contact,
+            self.deactivation,
         ]
     }
     /// Switches one effect; `false` if there is none of that name.
@@ -90,6 +106,7 @@ impl Effects {
             "mimic" => &mut self.mimic,
             "breaking" => &mut self.breaking,
             "contact" => &mut self.contact,
+            "deactivation" => &mut self.deactivation,
             _ => return false,
         };
         *field = on;

@@ -22,8 +22,8 @@ mod yielding;
 
 pub use axis_set::{AxisSet, StateRef, StepStart, Work};
 pub use command::{AxisCommand, Mode};
-pub use contacts::{ContactPoint, Contacts};
 pub use cone::{ConeBlock, Plane, disc};
+pub use contacts::{ContactPoint, Contacts};
 pub use couplings::Stage as CouplingStage;
 pub use drive::Brakes;
 pub use law::{AxisInput, Law};
