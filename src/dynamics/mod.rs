@@ -24,7 +24,7 @@ pub use aba::{Dof, Workspace, aba, aba_fused, aba_hybrid};
 pub use ball::{BallIn, BallLock};
 pub use check::singular_axes;
 pub use crba::crba;
-pub use energy::{Energy, Momentum, energy, momentum};
+pub use energy::{Energy, Momentum, body_energy, energy, momentum};
 pub use integrate::{coordinate_rates, exponential_step, move_coordinates, normalize, turn};
 pub use joint::joint_transform;
 pub use joint_force::JointForces;

@@ -145,6 +145,16 @@ impl Contacts {
         (self.h, self.worst) = (0.0, 0.0);
     }
 
+    /// Poses and velocities at the start of the step.
+    pub fn start(&self) -> &Kinematics {
+        &self.start
+    }
+
+    /// The bodies of contacts that carried something in the last step and act on something.
+    pub fn carrying_bodies(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        self.points.iter().filter(|p| p.is_live() && p.impulse.normal > 0.0).map(|p| p.touch.bodies)
+    }
+
     /// Which bodies rest: to what moves they are as heavy as the world, and what lies between them stays as it is.
     pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
         self.rests.iter_mut().enumerate().for_each(|(body, flag)| *flag = rests(body));
