@@ -48,6 +48,9 @@ pub struct Workspace<T> {
     pub ball_in: Vec<BallIn<T>>,
     /// Torque that keeps a locked velocity coordinate to its acceleration (filled by [`aba_hybrid`]).
     pub reaction: Vec<T>,
+    /// The bodies that take part, first and one past the last, ascending: whole trees. The accelerations of the others stay
+    /// as they are.
+    pub active: Vec<(usize, usize)>,
 }
 
 impl<T: Real> Workspace<T> {
@@ -64,6 +67,7 @@ impl<T: Real> Workspace<T> {
             dofs: vec![DofIn::free(o); nv],
             ball_in: vec![BallIn::default(); model.balls],
             reaction: vec![o; nv],
+            active: vec![(1, n)],
         }
     }
 
@@ -153,17 +157,23 @@ fn kernel<T: Real, const HYBRID: bool>(
     qdd: &mut [T],
 ) {
     ws.kin[0] = Kin { r: M3::identity(), ..Kin::default() };
-    for (i, b) in m.bodies.iter().enumerate().skip(1) {
-        let kin = moved(b, q, v, &ws.kin[b.parent]);
-        ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
-        ws.kin[i] = kin;
-    }
-    for i in (1..m.bodies.len()).rev() {
-        inward::<T, HYBRID>(m, ws, i, (q, v), tau);
+    for k in 0..ws.active.len() {
+        let (from, to) = ws.active[k];
+        for (i, b) in m.bodies.iter().enumerate().take(to).skip(from) {
+            let kin = moved(b, q, v, &ws.kin[b.parent]);
+            ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
+            ws.kin[i] = kin;
+        }
+        for i in (from..to).rev() {
+            inward::<T, HYBRID>(m, ws, i, (q, v), tau);
+        }
     }
     ws.start(gravity);
-    for i in 1..m.bodies.len() {
-        outward::<T, HYBRID>(m, ws, i, (q, v), qdd);
+    for k in 0..ws.active.len() {
+        let (from, to) = ws.active[k];
+        for i in from..to {
+            outward::<T, HYBRID>(m, ws, i, (q, v), qdd);
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 //! A sliding axis moves with the mean of its speeds at the start and the end of the step, of second order. One that stands,
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
+use super::contacts::Contacts;
 use super::couplings::Couplings;
 use super::law::{FRICTION, Law};
 use super::mobility::Answers;
@@ -43,6 +44,8 @@ pub struct StepStart<'a> {
     pub whole: f64,
     /// Sliding axes move with their mean speed; else all move with the speed at the end.
     pub mean: bool,
+    /// Sweeps over the rows of contacts, at most.
+    pub sweeps: u32,
 }
 
 /// Work at the axes since the start, J: summed over the steps as h·torque·mean speed.
@@ -88,7 +91,11 @@ pub struct AxisSet {
     pub(super) paid: (f64, f64),
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
+    /// Per axis: its tree is out of the computation.
+    pub resting: Vec<bool>,
     pub(super) mean: bool,
+    /// Sweeps over the rows of contacts, at most.
+    pub(super) sweeps: u32,
     best: usize,
     patience: u32,
     /// Rows that hold followers to their leaders, if there are any.
@@ -130,7 +137,9 @@ impl AxisSet {
             work: Work::default(),
             paid: (0.0, 0.0),
             worst_stop: 0.0,
+            resting: vec![false; n],
             mean: false,
+            sweeps: 1,
             best: usize::MAX,
             patience: PATIENCE,
         }
@@ -141,6 +150,7 @@ impl AxisSet {
         self.memory.fill(0);
         self.effort.fill(0.0);
         self.stiff.fill(false);
+        self.resting.fill(false);
         self.brakes.fill(Brakes::default());
         (self.work, self.worst_stop) = (Work::default(), 0.0);
         if let Some(couplings) = &mut self.couplings {
@@ -153,6 +163,9 @@ impl AxisSet {
         let at_pole = self.update_rates(m, start.state.angles);
         (self.best, self.patience) = (usize::MAX, PATIENCE);
         for (i, axis) in m.axes.iter().enumerate() {
+            if self.resting[i] {
+                continue;
+            }
             let (q, v) = self.axis_state(m, axis, start.state);
             self.speed[i] = v;
             if effects.limits {
@@ -176,7 +189,7 @@ impl AxisSet {
             self.place[i] = self.laws[i].guess(v, self.memory[i]);
             self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }
-        self.mean = start.mean;
+        (self.mean, self.sweeps) = (start.mean, start.sweeps);
         self.start_couplings(m, start);
         self.set_weights(m);
         at_pole
@@ -217,7 +230,7 @@ impl AxisSet {
         if let Some(answers) = &mut self.answers {
             answers.forget();
         }
-        let loose = self.couple(m, ws, at, h, qdd);
+        let loose = self.couple(m, ws, (at, v0), h, qdd);
         let misfits = self.misfits(m, ws, (h, qdd)) + loose;
         if misfits > 0 && wanted {
             if misfits < self.best {
@@ -249,6 +262,9 @@ impl AxisSet {
         let (mut count, mut breaking) = (0, 0);
         for (i, axis) in m.axes.iter().enumerate() {
             self.moves[i] = 0;
+            if self.resting[i] {
+                continue;
+            }
             let (law, place) = (&self.laws[i], self.place[i]);
             if place % 2 == 1 {
                 self.moves[i] = law.leaves_riser(place / 2, self.riser_torque(m, ws, i, qdd));
@@ -308,6 +324,9 @@ impl AxisSet {
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
         self.paid = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
+            if self.resting[i] {
+                continue;
+            }
             let (law, place) = (&self.laws[i], self.place[i]);
             let acceleration = self.axis_rate(m, axis, qdd);
             let end = self.speed[i] + h * acceleration;
@@ -346,6 +365,32 @@ impl AxisSet {
     /// True if no axis has been moved to another part of its law in the last pass.
     pub fn is_calm(&self) -> bool {
         self.best == usize::MAX
+    }
+
+    /// Do contacts make the step from its start, or to this state, anything but smooth?
+    pub fn collides(&mut self, m: &Model, end: Option<StateRef>) -> bool {
+        let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) else { return false };
+        match end {
+            None => contacts.touching(),
+            Some(s) => contacts.overlap(m, s.q, s.v),
+        }
+    }
+
+    /// Tells the contacts which bodies rest.
+    pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
+        if let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) {
+            contacts.rest(rests);
+        }
+    }
+
+    /// What the contacts' rows were left with in the last pass, m/s.
+    pub fn residual(&self) -> f64 {
+        self.contacts().map_or(0.0, |c| if c.is_empty() { 0.0 } else { c.residual })
+    }
+
+    /// All contacts, if anything can touch.
+    pub fn contacts(&self) -> Option<&Contacts> {
+        self.couplings.as_ref().and_then(|c| c.contacts())
     }
 
     /// Gradients of the angles at these angles; true if a 3DOF group is at its pole.

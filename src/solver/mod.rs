@@ -6,6 +6,7 @@
 mod axis_set;
 mod command;
 mod cone;
+mod contacts;
 mod couplings;
 mod dense;
 mod drive;
@@ -24,6 +25,7 @@ mod yielding;
 pub use axis_set::{AxisSet, StateRef, StepStart, Work};
 pub use command::{AxisCommand, Mode};
 pub use cone::{ConeBlock, Plane, disc};
+pub use contacts::{ContactPoint, Contacts};
 pub use couplings::Stage as CouplingStage;
 pub use drive::Brakes;
 pub use law::{AxisInput, Law};

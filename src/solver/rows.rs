@@ -154,6 +154,16 @@ impl Rows {
         &mut self.rows[self.blocks[block].first + n]
     }
 
+    /// Index of the first row of a block.
+    pub fn first_row(&self, block: usize) -> usize {
+        self.blocks[block].first
+    }
+
+    /// Impulse of row `n` of a block.
+    pub fn impulse(&self, block: usize, n: usize) -> f64 {
+        self.rows[self.blocks[block].first + n].impulse
+    }
+
     /// Impulse of the only row of a block.
     pub(super) fn row_impulse(&self, block: usize) -> f64 {
         self.rows[self.blocks[block].first].impulse
@@ -251,6 +261,15 @@ impl Rows {
             (0..b.rows).map(of).fold(0.0, f64::max)
         };
         self.blocks.iter().filter(|b| !b.is_off()).map(size).fold(0.0, f64::max)
+    }
+
+    /// Σ x·(bias + y·w/2) for the w of [`Rows::gather`].
+    pub(super) fn work(&self) -> f64 {
+        let of = |b: &Block, n: usize| {
+            let row = &self.rows[b.first + n];
+            row.impulse * (row.bias + 0.5 * self.reach(b, n))
+        };
+        self.blocks.iter().filter(|b| !b.is_off()).map(|b| (0..b.rows).map(|n| of(b, n)).sum::<f64>()).sum()
     }
 
     /// `y·w`.

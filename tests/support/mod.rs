@@ -57,6 +57,7 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         breakables: vec![],
         chains: vec![],
         rigs: vec![],
+        colliders: vec![],
         effects: Effects { gravity: true, drives: true, ..Effects::NONE },
     };
     m.bodies.push(body(&mut rng, 0, JointType::Revolute));
@@ -105,6 +106,7 @@ fn add_axes(m: &mut Model) {
         fixed: true,
         monitor: None,
         membership: None,
+        deactivation: None,
         mass: 0.0,
         frame: LinkFrame::OnBody { body: 0, offset: realnoid::math::Pose::identity() },
     });
