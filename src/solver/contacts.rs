@@ -3,7 +3,8 @@
 //! Notation: J(q) takes velocities v to the velocity u of side 1 against side 0 at a contact, along (normal, tangent, tangent);
 //! 0, m, 1 mark the start, the middle and the end of a step of h. Derived in `docs/decisions/0016-contacts.md`.
 
-use super::rows::{Kind, Lift, LiftKind, Rows, Solved};
+use super::lifts::{Lift, LiftKind};
+use super::rows::{Kind, Rows, Solved};
 use crate::contact::{Detector, Placed, Touch};
 use crate::dynamics::{Kinematics, Push, Response, Workspace, kinematics};
 use crate::math::V3;
