@@ -1,5 +1,6 @@
 //! URDF text → model, with every finding on the way.
 
+use crate::contact::{Defaults, colliders};
 use crate::description::{self, Description, Finding, Severity, WORLD_ANCHOR};
 use crate::dynamics::singular_axes;
 use crate::engine::{ENGINE_NAMES, State, come_apart, not_honoured};
@@ -121,7 +122,8 @@ pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, 
             return None;
         }
         let simulated: Vec<MassProperties> = bodies.iter().map(|body| body.simulated).collect();
-        let model = Model::build(&d, &simulated, base, base_pose);
+        let mut model = Model::build(&d, &simulated, base, base_pose);
+        findings.extend(colliders(&d, &mut model, &meshes, Defaults::default()));
         let singular = singular_axes(&model);
         findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
         let unsound = if singular.is_empty() { unsound_breaks(&d, &model) } else { vec![] };

@@ -81,6 +81,7 @@ impl<'a> Builder<'a> {
             chains: chains(d),
             rigs: vec![],
             colliders: vec![],
+            excluded_pairs: vec![],
             effects: Effects::NONE,
         };
         let seats = vec![(0, Pose::identity()); d.links.len()];
