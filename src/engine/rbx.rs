@@ -2,7 +2,7 @@
 
 use super::midpoint::Midpoint;
 use super::rk4::Stages;
-use crate::dynamics::{Workspace, exponential_step, normalize};
+use crate::dynamics::{Scheme, Workspace, exponential_step, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, StateRef, StepStart, write_softs};
@@ -65,6 +65,13 @@ impl State {
         }
         s.couple_in_range(m);
         s
+    }
+
+    /// Appends the state of a model that joins ([`Model::join`]).
+    pub fn join(&mut self, other: &Self) {
+        self.q.extend_from_slice(&other.q);
+        self.v.extend_from_slice(&other.v);
+        self.angles.extend_from_slice(&other.angles);
     }
 
     /// Position (rad, m) and speed of an axis.
@@ -298,9 +305,11 @@ impl Rbx {
         let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects);
+        write_damping(m, &mut self.ws, (s.h, Scheme::Start), s.effects.body_damping);
         report.unsettled = !self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
+        self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);
@@ -314,6 +323,7 @@ impl Rbx {
             return false;
         }
         let Some(mut st) = self.stages.take() else { return false };
+        write_damping(m, &mut self.ws, (s.h, Scheme::Continuous), s.effects.body_damping);
         let smooth = self.rk4_stages(m, s, &mut st);
         self.stages = Some(st);
         if !smooth {

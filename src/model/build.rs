@@ -79,6 +79,8 @@ impl<'a> Builder<'a> {
             breakables: vec![],
             chains: chains(d),
             rigs: vec![],
+            dampings: vec![],
+            joined: vec![],
             colliders: vec![],
             effects: Effects::NONE,
         };
@@ -323,6 +325,7 @@ impl<'a> Builder<'a> {
         }
         self.model.rigs = rigs(self.d, &self.model);
         self.model.couplings = super::coupling::couplings(self.d, &self.model);
+        self.model.dampings = super::damping::dampings(self.d, &self.model);
         self.model.effects = Effects::called_for(&self.model);
     }
 }

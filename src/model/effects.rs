@@ -3,8 +3,18 @@
 use super::Model;
 
 /// Names for `--on` and `--off`, in the order of the fields of [`Effects`].
-pub const EFFECT_NAMES: [&str; 9] =
-    ["gravity", "damping", "friction", "limits", "drives", "rotor_inertia", "compliance", "mimic", "breaking"];
+pub const EFFECT_NAMES: [&str; 10] = [
+    "gravity",
+    "damping",
+    "friction",
+    "limits",
+    "drives",
+    "rotor_inertia",
+    "compliance",
+    "mimic",
+    "breaking",
+    "body_damping",
+];
 
 /// One switch per effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +37,8 @@ pub struct Effects {
     pub mimic: bool,
     /// Joints that come apart (`<constraint break_threshold>`).
     pub breaking: bool,
+    /// Damping of bodies (`<damping>`).
+    pub body_damping: bool,
 }
 
 impl Effects {
@@ -43,6 +55,7 @@ impl Effects {
             compliance: m.softs.iter().any(|s| s.softness.cfm > 0.0),
             mimic: !m.couplings.is_empty(),
             breaking: !m.breakables.is_empty(),
+            body_damping: !m.dampings.is_empty(),
         }
     }
     /// No effect at all.
@@ -56,6 +69,7 @@ impl Effects {
         compliance: false,
         mimic: false,
         breaking: false,
+        body_damping: false,
     };
     /// The switches in the order of [`EFFECT_NAMES`].
     pub fn as_array(&self) -> [bool; EFFECT_NAMES.len()] {
@@ -69,7 +83,17 @@ impl Effects {
             self.compliance,
             self.mimic,
             self.breaking,
+            self.body_damping,
         ]
+    }
+    /// What either calls for.
+    pub fn or(&self, other: &Self) -> Self {
+        let mut both = *self;
+        for (name, on) in EFFECT_NAMES.iter().zip(other.as_array()) {
+            // A name of the list is a name of a field.
+            let _ = on && both.switch(name, true);
+        }
+        both
     }
     /// Switches one effect; `false` if there is none of that name.
     #[must_use]
@@ -84,6 +108,7 @@ impl Effects {
             "compliance" => &mut self.compliance,
             "mimic" => &mut self.mimic,
             "breaking" => &mut self.breaking,
+            "body_damping" => &mut self.body_damping,
             _ => return false,
         };
         *field = on;

@@ -7,6 +7,7 @@ mod axis_set;
 mod command;
 mod cone;
 mod couplings;
+mod damping;
 mod drive;
 mod finish;
 mod gauss_seidel;

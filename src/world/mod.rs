@@ -268,7 +268,7 @@ impl World {
         s.effort.copy_from_slice(&self.engine.axes.effort);
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
-            s.cut_off[link] = link != m.root_link && m.links[link].parent.is_none();
+            s.cut_off[link] = m.links[link].parent.is_none() && !m.is_root(link);
             s.link_twist[link] = link_twist(m, &self.kinematics, (&state.q, &state.v), &state.angles, link);
         }
         let e = self.energy();
