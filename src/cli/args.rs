@@ -204,7 +204,8 @@ pub struct SimulateArgs {
     /// Time between two rows, s: a whole multiple of the control interval, which it is if not given.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub every: Option<f64>,
-    /// Switch an effect off: gravity, damping, friction, limits, drives, rotor_inertia, compliance, mimic, breaking.
+    /// Switch an effect off: gravity, damping, friction, limits, drives, rotor_inertia, compliance, mimic, breaking,
+    /// body_damping, contact.
     #[arg(long, value_name = "EFFECT")]
     pub off: Vec<String>,
     /// Switch an effect on.

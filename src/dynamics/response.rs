@@ -190,6 +190,12 @@ impl Response {
         self.load.fill(Load::default());
     }
 
+    /// Provisional.
+    pub fn velocity(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], out: &mut [f64]) {
+        let mut ws = ws.clone();
+        self.apply(m, &mut ws, q, out);
+    }
+
     fn inward(&mut self, m: &Model, ws: &mut Workspace<f64>, q: &[f64], i: usize) {
         let b = &m.bodies[i];
         let walk = Walk { body: i, force: self.load[i].force, own: self.load[i].own };

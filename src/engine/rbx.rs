@@ -2,10 +2,10 @@
 
 use super::midpoint::Midpoint;
 use super::rk4::Stages;
-use crate::dynamics::{Scheme, Workspace, exponential_step, normalize, write_damping};
+use crate::dynamics::{Kinematics, Scheme, Workspace, exponential_step, move_coordinates, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, StateRef, StepStart, write_softs};
+use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart, write_softs};
 
 /// How the state is advanced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -237,6 +237,9 @@ pub struct Rbx {
     pub(super) ws: Workspace<f64>,
     pub(super) qdd: Vec<f64>,
     pub(super) before: State,
+    /// Speeds that keep bodies out of each other.
+    pub(super) lift: Vec<f64>,
+    unlifted: Vec<f64>,
     /// The step, s, of which a halved one is a part.
     pub(super) whole_step: f64,
     midpoint: Option<Midpoint>,
@@ -252,6 +255,8 @@ impl Rbx {
             ws: Workspace::new(m),
             qdd: vec![0.0; m.nv],
             before: state.clone(),
+            lift: vec![0.0; m.nv],
+            unlifted: vec![0.0; m.nq],
             whole_step: 0.0,
             midpoint: None,
             stages: None,
@@ -300,9 +305,19 @@ impl Rbx {
         report
     }
 
+    /// The contacts of the last step that carry something, at these poses.
+    pub fn contacts<'a>(&'a self, k: &'a Kinematics) -> impl Iterator<Item = ContactPoint> + 'a {
+        self.axes.contacts().into_iter().flat_map(|c| c.shown(k))
+    }
+
+    /// The deepest penetration so far, with these poses as the last ones, m.
+    pub fn worst_penetration(&self, k: &Kinematics) -> f64 {
+        self.axes.contacts().map_or(0.0, |c| c.worst.max(c.depth(k)))
+    }
+
     fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) {
         let at = self.state.as_ref();
-        let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false };
+        let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false, sweeps: s.passes };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects);
         write_damping(m, &mut self.ws, (s.h, Scheme::Start), s.effects.body_damping);
@@ -310,21 +325,27 @@ impl Rbx {
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
         self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
+        let lifted = self.axes.lift(m, &self.ws, (at.q, at.v, &self.qdd), s.h, &mut self.lift);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
+        if lifted {
+            self.unlifted.copy_from_slice(&self.state.q);
+            move_coordinates(m, &self.unlifted, &self.lift, s.h, &mut self.state.q);
+        }
         self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);
     }
 
     /// False, with the state as before, if the step is not smooth.
     fn rk4(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> bool {
-        let start = StepStart { state: self.state.as_ref(), commands, h: s.h, whole: s.h, mean: true };
+        let start =
+            StepStart { state: self.state.as_ref(), commands, h: s.h, whole: s.h, mean: true, sweeps: s.passes };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
-        if !self.axes.is_smooth(m) {
+        if !self.axes.is_smooth(m) || self.axes.collides(m, None) {
             return false;
         }
         let Some(mut st) = self.stages.take() else { return false };
         write_damping(m, &mut self.ws, (s.h, Scheme::Continuous), s.effects.body_damping);
-        let smooth = self.rk4_stages(m, s, &mut st);
+        let smooth = self.rk4_stages(m, s, &mut st) && !self.axes.collides(m, Some(self.state.as_ref()));
         self.stages = Some(st);
         if !smooth {
             self.state.copy_from(&self.before);

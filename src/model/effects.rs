@@ -3,7 +3,7 @@
 use super::Model;
 
 /// Names for `--on` and `--off`, in the order of the fields of [`Effects`].
-pub const EFFECT_NAMES: [&str; 10] = [
+pub const EFFECT_NAMES: [&str; 11] = [
     "gravity",
     "damping",
     "friction",
@@ -14,6 +14,7 @@ pub const EFFECT_NAMES: [&str; 10] = [
     "mimic",
     "breaking",
     "body_damping",
+    "contact",
 ];
 
 /// One switch per effect.
@@ -39,6 +40,8 @@ pub struct Effects {
     pub breaking: bool,
     /// Damping of bodies (`<damping>`).
     pub body_damping: bool,
+    /// Contacts of bodies with each other and with the ground.
+    pub contact: bool,
 }
 
 impl Effects {
@@ -56,6 +59,7 @@ impl Effects {
             mimic: !m.couplings.is_empty(),
             breaking: !m.breakables.is_empty(),
             body_damping: !m.dampings.is_empty(),
+            contact: m.colliders.len() > 1,
         }
     }
     /// No effect at all.
@@ -70,6 +74,7 @@ impl Effects {
         mimic: false,
         breaking: false,
         body_damping: false,
+        contact: false,
     };
     /// The switches in the order of [`EFFECT_NAMES`].
     pub fn as_array(&self) -> [bool; EFFECT_NAMES.len()] {
@@ -84,16 +89,8 @@ impl Effects {
             self.mimic,
             self.breaking,
             self.body_damping,
+            self.contact,
         ]
-    }
-    /// What either calls for.
-    pub fn or(&self, other: &Self) -> Self {
-        let mut both = *self;
-        for (name, on) in EFFECT_NAMES.iter().zip(other.as_array()) {
-            // A name of the list is a name of a field.
-            let _ = on && both.switch(name, true);
-        }
-        both
     }
     /// Switches one effect; `false` if there is none of that name.
     #[must_use]
@@ -109,6 +106,7 @@ impl Effects {
             "mimic" => &mut self.mimic,
             "breaking" => &mut self.breaking,
             "body_damping" => &mut self.body_damping,
+            "contact" => &mut self.contact,
             _ => return false,
         };
         *field = on;

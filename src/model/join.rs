@@ -1,6 +1,6 @@
 //! Several robots and free bodies in one world: one [`Model`] is a forest on the world, so the dynamics need not know.
 
-use super::{Axis, AxisSlot, Base, Body, Coupling, LinkFrame, LinkInfo, Membership, Model, Rig};
+use super::{Axis, AxisSlot, Base, Body, Coupling, Effects, LinkFrame, LinkInfo, Membership, Model, Rig};
 use crate::math::Pose;
 use std::ops::Range;
 
@@ -35,7 +35,7 @@ struct Shift {
 impl Model {
     /// Appends another model, which shares the world with this one: all indices of `other` grow, those of `self` stay. Axes,
     /// links, chains and rigs of `other` are called `name/…` afterwards, but for a lone link of that name itself. States
-    /// join likewise (`State::join`).
+    /// join likewise (`State::join`). The effects are those that the whole calls for.
     pub fn join(&mut self, other: Self, name: &str) {
         let shift = self.shift();
         let alone = other.links.len() == 1 && other.links[0].name == name;
@@ -68,7 +68,7 @@ impl Model {
         self.rigs.extend(other.rigs.iter().map(|r| shift.rig(r, &named)));
         self.append_rest(&other, &shift, &named);
         (self.nq, self.nv, self.balls) = (self.nq + other.nq, self.nv + other.nv, self.balls + other.balls);
-        self.effects = self.effects.or(&other.effects);
+        self.effects = Effects::called_for(self);
     }
 
     fn shift(&self) -> Shift {

@@ -252,6 +252,11 @@ impl Model {
             AxisSlot::Apart { .. } => None,
         }
     }
+    /// Gives the model what collides; [`Effects`] are as they would have been with it from the start.
+    pub fn set_colliders(&mut self, colliders: Vec<Collider>) {
+        self.colliders = colliders;
+        self.effects.contact = Effects::called_for(self).contact;
+    }
     /// Total mass of all links, kg.
     pub fn mass(&self) -> f64 {
         self.links.iter().map(|l| l.mass).sum()

@@ -8,6 +8,7 @@
 //! A sliding axis moves with the mean of its speeds at the start and the end of the step, of second order. One that stands,
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
+use super::contacts::Contacts;
 use super::couplings::Couplings;
 use super::law::{FRICTION, Law};
 use super::mobility::Answers;
@@ -43,6 +44,8 @@ pub struct StepStart<'a> {
     pub whole: f64,
     /// Sliding axes move with their mean speed; else all move with the speed at the end.
     pub mean: bool,
+    /// Sweeps over the rows of contacts, at most.
+    pub sweeps: u32,
 }
 
 /// Work at the axes since the start, J: summed over the steps as h·torque·mean speed.
@@ -89,6 +92,8 @@ pub struct AxisSet {
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
     pub(super) mean: bool,
+    /// Sweeps over the rows of contacts, at most.
+    pub(super) sweeps: u32,
     best: usize,
     patience: u32,
     /// Rows that hold followers to their leaders, if there are any.
@@ -131,6 +136,7 @@ impl AxisSet {
             paid: (0.0, 0.0),
             worst_stop: 0.0,
             mean: false,
+            sweeps: 1,
             best: usize::MAX,
             patience: PATIENCE,
         }
@@ -176,7 +182,7 @@ impl AxisSet {
             self.place[i] = self.laws[i].guess(v, self.memory[i]);
             self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }
-        self.mean = start.mean;
+        (self.mean, self.sweeps) = (start.mean, start.sweeps);
         self.start_couplings(m, start);
         self.set_weights(m);
         at_pole
@@ -217,7 +223,7 @@ impl AxisSet {
         if let Some(answers) = &mut self.answers {
             answers.forget();
         }
-        let loose = self.couple(m, ws, at, h, qdd);
+        let loose = self.couple(m, ws, (at, v0), h, qdd);
         let misfits = self.misfits(m, ws, (h, qdd)) + loose;
         if misfits > 0 && wanted {
             if misfits < self.best {
@@ -346,6 +352,25 @@ impl AxisSet {
     /// True if no axis has been moved to another part of its law in the last pass.
     pub fn is_calm(&self) -> bool {
         self.best == usize::MAX
+    }
+
+    /// Do contacts make the step from its start, or to this state, anything but smooth?
+    pub fn collides(&mut self, m: &Model, end: Option<StateRef>) -> bool {
+        let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) else { return false };
+        match end {
+            None => contacts.touching(),
+            Some(s) => contacts.overlap(m, s.q, s.v),
+        }
+    }
+
+    /// What the contacts' rows were left with in the last pass, m/s.
+    pub fn residual(&self) -> f64 {
+        self.contacts().map_or(0.0, |c| if c.is_empty() { 0.0 } else { c.residual })
+    }
+
+    /// All contacts, if anything can touch.
+    pub fn contacts(&self) -> Option<&Contacts> {
+        self.couplings.as_ref().and_then(|c| c.contacts())
     }
 
     /// Gradients of the angles at these angles; true if a 3DOF group is at its pole.

@@ -6,6 +6,7 @@
 mod axis_set;
 mod command;
 mod cone;
+mod contacts;
 mod couplings;
 mod damping;
 mod drive;
@@ -23,8 +24,9 @@ mod yielding;
 pub use axis_set::{AxisSet, StateRef, StepStart, Work};
 pub use command::{AxisCommand, Mode};
 pub use cone::{ConeBlock, Plane, disc};
+pub use contacts::{ContactPoint, Contacts};
 pub use couplings::Stage as CouplingStage;
 pub use drive::Brakes;
 pub use law::{AxisInput, Law};
-pub use rows::{FINISH_ROWS, Kind, Row, Rows, Solved};
+pub use rows::{FINISH_ROWS, Kind, Lift, LiftKind, Row, Rows, Solved};
 pub use soft::write_softs;

@@ -92,6 +92,29 @@ impl Solved {
     }
 }
 
+/// What a lift asks of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LiftKind {
+    /// Nothing.
+    #[default]
+    Off,
+    /// At least 0.
+    AtLeast,
+    /// 0.
+    Exactly,
+}
+
+/// Position pass of the first row of a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Lift {
+    /// What is asked.
+    pub kind: LiftKind,
+    /// Without impulses.
+    pub bias: f64,
+    /// Found.
+    pub impulse: f64,
+}
+
 /// The rows of a problem. Adding blocks may allocate; solving does not.
 #[derive(Clone, Debug)]
 pub struct Rows {
@@ -101,6 +124,7 @@ pub struct Rows {
     pub(super) values: Vec<f64>,
     pub(super) w: Vec<f64>,
     pub(super) finish: super::finish::Scratch,
+    pub(super) lifts: Vec<Lift>,
 }
 
 impl Rows {
@@ -113,6 +137,7 @@ impl Rows {
             values: vec![],
             w: vec![0.0; width],
             finish: Default::default(),
+            lifts: vec![],
         }
     }
 
@@ -139,6 +164,26 @@ impl Rows {
     /// Row `n` of a block.
     pub fn row(&mut self, block: usize, n: usize) -> &mut Row {
         &mut self.rows[self.blocks[block].first + n]
+    }
+
+    /// Drops the blocks from this index on; keeps their memory.
+    pub fn truncate(&mut self, blocks: usize) {
+        let Some(b) = self.blocks.get(blocks) else { return };
+        let (first, start, values) = (b.first, b.ids.start, b.values);
+        self.blocks.truncate(blocks);
+        self.rows.truncate(first);
+        self.ids.truncate(start);
+        self.values.truncate(values);
+    }
+
+    /// Index of the first row of a block.
+    pub fn first_row(&self, block: usize) -> usize {
+        self.blocks[block].first
+    }
+
+    /// Impulse of row `n` of a block.
+    pub fn impulse(&self, block: usize, n: usize) -> f64 {
+        self.rows[self.blocks[block].first + n].impulse
     }
 
     /// Impulse of the only row of a block.
@@ -238,6 +283,44 @@ impl Rows {
             (0..b.rows).map(of).fold(0.0, f64::max)
         };
         self.blocks.iter().filter(|b| !b.is_off()).map(size).fold(0.0, f64::max)
+    }
+
+    /// Lift of a block.
+    pub fn lift(&mut self, block: usize) -> &mut Lift {
+        if self.lifts.len() < self.blocks.len() {
+            self.lifts.resize(self.blocks.len(), Lift::default());
+        }
+        &mut self.lifts[block]
+    }
+
+    /// Provisional.
+    pub fn solve_lifts(&mut self, _sweeps: u32, _aim: f64) {
+        self.w.fill(0.0);
+        for _ in 0..200 {
+            for k in 0..self.blocks.len() {
+                let lift = self.lifts[k];
+                if self.blocks[k].is_off() || lift.kind == LiftKind::Off {
+                    continue;
+                }
+                let b = &self.blocks[k];
+                let h = self.own(b, 0, 0);
+                let mut x = lift.impulse - (lift.bias + self.reach(b, 0)) / h;
+                if lift.kind == LiftKind::AtLeast {
+                    x = x.max(0.0);
+                }
+                self.push(k, 0, x - lift.impulse);
+                self.lifts[k].impulse = x;
+            }
+        }
+    }
+
+    /// Σ x·(bias + y·w/2) for the w of [`Rows::gather`].
+    pub(super) fn work(&self) -> f64 {
+        let of = |b: &Block, n: usize| {
+            let row = &self.rows[b.first + n];
+            row.impulse * (row.bias + 0.5 * self.reach(b, n))
+        };
+        self.blocks.iter().filter(|b| !b.is_off()).map(|b| (0..b.rows).map(|n| of(b, n)).sum::<f64>()).sum()
     }
 
     /// `y·w`.

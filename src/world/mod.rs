@@ -1,6 +1,7 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
 mod breaking;
+mod contact;
 mod drive;
 mod pose;
 mod settings;
@@ -14,6 +15,7 @@ use std::sync::Arc;
 
 pub use crate::solver::{AxisCommand, Mode, Work};
 pub use breaking::Broken;
+pub use contact::ContactPoint;
 pub use pose::Side;
 pub use settings::{Integrator, Settings};
 pub use snapshot::Snapshot;
@@ -36,6 +38,8 @@ pub struct Stats {
     pub guarded_energy: f64,
     /// By how much an axis was outside its range at most (a soft stop, a start there, an angle of a 3DOF group); rad or m.
     pub worst_stop_violation: f64,
+    /// The deepest penetration of two bodies at the start or the end of a step, m.
+    pub worst_penetration: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
     pub pole_steps: u64,
     /// Steps whose result was not finite and was not taken. The world stands still from the first one on.
@@ -61,6 +65,7 @@ pub struct World {
     /// Part of a nanosecond that the time scale has left over.
     rest_ns: f64,
     stats: Stats,
+    contacts: Vec<ContactPoint>,
 }
 
 impl World {
@@ -86,6 +91,7 @@ impl World {
             stamp_ns: 0,
             rest_ns: 0.0,
             stats: Stats::default(),
+            contacts: vec![],
         };
         world.reset();
         Ok(world)
@@ -239,6 +245,9 @@ impl World {
 
     fn update(&mut self) {
         kinematics(&self.model, &mut self.kinematics, &self.engine.state.q, &self.engine.state.v);
+        if self.engine.axes.contacts().is_some() {
+            self.show_contacts();
+        }
     }
 
     /// A snapshot with all buffers at their size.

@@ -59,6 +59,7 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         rigs: vec![],
         dampings: vec![],
         joined: vec![],
+        colliders: vec![],
         effects: Effects { gravity: true, drives: true, ..Effects::NONE },
     };
     m.bodies.push(body(&mut rng, 0, JointType::Revolute));

@@ -1,0 +1,578 @@
+//! Contacts as rows: Coulomb's cone, rolling and spinning friction, restitution, and what keeps bodies out of each other.
+//!
+//! Notation: J(q) takes velocities v to the velocity u of side 1 against side 0 at a contact, along (normal, tangent, tangent);
+//! 0, m, 1 mark the start, the middle and the end of a step of h. Derived in `docs/decisions/0016-contacts.md`.
+
+use super::rows::{Kind, Lift, LiftKind, Rows, Solved};
+use crate::contact::{Detector, Placed, Touch};
+use crate::dynamics::{Kinematics, Push, Response, Workspace, kinematics};
+use crate::math::V3;
+use crate::model::{JointType, Model, Surface};
+
+/// Share of a penetration that one step takes back.
+const ERP: f64 = 0.2;
+/// Share of the velocities at the start to which the rows are solved if that is possible.
+const AIM: f64 = 1e-12;
+/// Gaps that differ by less are equal, m.
+const FLUSH: f64 = 1e-10;
+
+/// What one touch is asked and gives.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    touch: Touch,
+    surface: Surface,
+    /// At the start of the step: gap, and J₀ v₀ as a vector of the world and its normal part.
+    gap: f64,
+    start: (V3<f64>, f64),
+    /// In the middle of the step.
+    placed: Placed,
+    axes: [V3<f64>; 3],
+    /// Jₘ v₀ along the normal.
+    middle_speed: f64,
+    /// Least normal velocity at the end of the step, m/s.
+    floor: f64,
+    /// Velocity and gap at the end of the step after a bounce, if it bounces.
+    bounce: Option<(f64, f64)>,
+    /// Normal velocity at the end of the step without impulses of contacts, m/s.
+    free: f64,
+    /// Blocks of the cone, and of rolling and spinning friction, where there is any.
+    block: usize,
+    rolling: Option<usize>,
+    spinning: Option<usize>,
+    impulse: Impulse,
+    /// The same with bounces.
+    bounced: Impulse,
+}
+
+/// Impulses of a contact on side 1, along the world's axes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Impulse {
+    /// N·s.
+    normal: f64,
+    /// N·s.
+    tangent: V3<f64>,
+    /// N·m·s.
+    rolling: V3<f64>,
+    /// N·m·s.
+    spinning: f64,
+}
+
+/// One contact of the last step, in the world.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactPoint {
+    /// Indices into `Model::colliders`.
+    pub colliders: [usize; 2],
+    /// m.
+    pub point: V3<f64>,
+    /// Unit, from the first collider to the second.
+    pub normal: V3<f64>,
+    /// By how much the two overlap at the end of the step; below 0: a gap; m.
+    pub depth: f64,
+    /// On the second, averaged over the step, N.
+    pub force: V3<f64>,
+}
+
+/// What a pass knows of its step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pass<'a> {
+    /// Coordinates of the pass (nq).
+    pub q: &'a [f64],
+    /// Velocities at the start of the step (nv).
+    pub v0: &'a [f64],
+    /// s.
+    pub h: f64,
+    /// Do coordinates move with the mean of the velocities?
+    pub mean: bool,
+    /// At most.
+    pub sweeps: u32,
+}
+
+/// All contacts of a model. Makes its memory once, and more only when there are more contacts than ever before.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    detector: Detector,
+    touches: Vec<Touch>,
+    points: Vec<Point>,
+    /// Of the last step, ordered by key.
+    old: Vec<Point>,
+    start: Kinematics,
+    middle: Kinematics,
+    end: Kinematics,
+    v1: Vec<f64>,
+    ids: Vec<u32>,
+    /// Step of the impulses of `old`, s.
+    h: f64,
+    /// The deepest penetration at the start of a step so far, m.
+    pub worst: f64,
+    /// Passes whose bounces were reduced, because they would have made energy.
+    pub tempered: u64,
+    /// What the last solve left, m/s.
+    pub residual: f64,
+}
+
+impl Contacts {
+    /// `None` if nothing can touch.
+    pub fn new(m: &Model) -> Option<Self> {
+        let detector = Detector::new(m)?;
+        let k = Kinematics::new(m);
+        Some(Self {
+            detector,
+            touches: vec![],
+            points: vec![],
+            old: vec![],
+            start: k.clone(),
+            middle: k.clone(),
+            end: k,
+            v1: vec![0.0; m.nv],
+            ids: vec![],
+            h: 0.0,
+            worst: 0.0,
+            tempered: 0,
+            residual: 0.0,
+        })
+    }
+
+    /// Forgets the steps so far.
+    pub fn reset(&mut self) {
+        self.points.clear();
+        self.old.clear();
+        (self.h, self.worst) = (0.0, 0.0);
+    }
+
+    /// Does something touch at the start of the step?
+    pub fn touching(&self) -> bool {
+        self.points.iter().any(|p| p.gap < FLUSH)
+    }
+
+    /// Would the touches of the step overlap in this state?
+    pub fn overlap(&mut self, m: &Model, q: &[f64], v: &[f64]) -> bool {
+        if self.points.is_empty() {
+            return false;
+        }
+        kinematics(m, &mut self.end, q, v);
+        self.depth(&self.end) > 0.0
+    }
+
+    /// Is there nothing near?
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Finds the touches of a step of `h` from the state `q`, `v`.
+    pub fn begin(&mut self, m: &Model, (q, v): (&[f64], &[f64]), h: f64) {
+        std::mem::swap(&mut self.points, &mut self.old);
+        self.points.clear();
+        kinematics(m, &mut self.start, q, v);
+        self.detector.find(&self.start, h, &mut self.touches);
+        let scale = if self.h > 0.0 { h / self.h } else { 0.0 };
+        let mut known = self.old.iter().peekable();
+        for touch in &self.touches {
+            let placed = touch.placed(&self.start);
+            let u = approach(&self.start, touch, placed.point);
+            while known.peek().is_some_and(|old| old.touch.key() < touch.key()) {
+                known.next();
+            }
+            let impulse = known.peek().filter(|old| old.touch.key() == touch.key()).map(|old| old.impulse.scaled(scale));
+            self.worst = self.worst.max(-placed.gap);
+            self.points.push(Point {
+                touch: *touch,
+                surface: self.detector.surface(touch.pair),
+                gap: placed.gap,
+                start: (u, placed.normal.dot(u)),
+                placed,
+                axes: axes(placed.normal),
+                middle_speed: 0.0,
+                floor: 0.0,
+                bounce: None,
+                free: 0.0,
+                block: 0,
+                rolling: None,
+                spinning: None,
+                impulse: impulse.unwrap_or_default(),
+                bounced: Impulse::default(),
+            });
+        }
+        self.h = h;
+    }
+
+    /// Solves the rows that are there together with those of all contacts, for velocities `v₀ + h qdd` without them, and pushes
+    /// with the impulses of the contacts.
+    pub(super) fn solve(
+        &mut self,
+        m: &Model,
+        ws: &Workspace<f64>,
+        (response, rows): (&mut Response, &mut Rows),
+        pass: &Pass,
+        qdd: &[f64],
+    ) -> Solved {
+        self.write(m, ws, (response, rows), pass, qdd);
+        let mut solved = rows.solve(pass.sweeps, AIM);
+        self.take(rows);
+        if self.bounce(rows, pass.h) {
+            solved = rows.solve(pass.sweeps, AIM);
+            self.temper(rows);
+            self.take(rows);
+        }
+        self.push(response, pass.h);
+        self.residual = solved.residual;
+        solved
+    }
+
+    /// Adds the rows of all contacts after the blocks that `rows` holds, for velocities `v₀ + h qdd` without them.
+    fn write(
+        &mut self,
+        m: &Model,
+        ws: &Workspace<f64>,
+        (response, rows): (&mut Response, &mut Rows),
+        pass: &Pass,
+        qdd: &[f64],
+    ) {
+        kinematics(m, &mut self.middle, pass.q, pass.v0);
+        end_velocities(m, pass, qdd, &mut self.v1);
+        kinematics(m, &mut self.end, pass.q, &self.v1);
+        for point in &mut self.points {
+            point.place(&self.middle, pass);
+            let mut target = Target { m, ws, response: &mut *response, rows: &mut *rows, ids: &mut self.ids, q: pass.q };
+            point.add_cone(&mut target, &self.middle);
+            point.aim(target.rows, &self.middle, &self.end);
+            point.add_discs(&mut target, &self.middle, &self.end);
+            point.write(rows, &point.impulse);
+        }
+    }
+
+    /// After the first solve: contacts that bounce. True if there are any; then the rows are to be solved again.
+    fn bounce(&mut self, rows: &mut Rows, h: f64) -> bool {
+        let mut any = false;
+        for point in &mut self.points {
+            point.bounce = None;
+            if point.surface.restitution > 0.0 && rows.impulse(point.block, 0) > 0.0 {
+                any |= point.rebound(rows, h);
+            }
+        }
+        any
+    }
+
+    /// Reduces the bounces to what leaves no more energy than there was: with friction, Newton's law of restitution can make
+    /// some. Between the solution without bounces and the one with them the work is a parabola.
+    fn temper(&mut self, rows: &mut Rows) {
+        for point in &mut self.points {
+            point.bounced = point.read(rows);
+        }
+        let (plain, half, full) = (self.work(rows, 0.0), self.work(rows, 0.5), self.work(rows, 1.0));
+        let bound = plain.max(0.0);
+        let share = if full <= bound { 1.0 } else { crossing([plain - bound, half - bound, full - bound]) };
+        self.tempered += u64::from(share < 1.0);
+        self.blend(rows, share);
+    }
+
+    /// Impulses between those without bounces (share 0) and those with them (1).
+    fn blend(&self, rows: &mut Rows, share: f64) {
+        for point in &self.points {
+            point.write(rows, &point.impulse.mixed(&point.bounced, share));
+        }
+        rows.gather();
+    }
+
+    /// What the impulses change the kinetic energy by, relative to the end of the step without them, J.
+    fn work(&self, rows: &mut Rows, share: f64) -> f64 {
+        self.blend(rows, share);
+        let wanted = |p: &Point| rows.impulse(p.block, 0) * (p.free - rows.rows()[rows.first_row(p.block)].bias);
+        rows.work() + self.points.iter().map(wanted).sum::<f64>()
+    }
+
+    fn take(&mut self, rows: &Rows) {
+        for point in &mut self.points {
+            point.impulse = point.read(rows);
+        }
+    }
+
+    fn push(&self, response: &mut Response, h: f64) {
+        for point in &self.points {
+            let force = (point.axes[0] * point.impulse.normal + point.impulse.tangent) * (1.0 / h);
+            let torque = (point.axes[0] * point.impulse.spinning + point.impulse.rolling) * (1.0 / h);
+            for push in pushes(&self.middle, &point.touch, point.placed.point, (force, torque)) {
+                response.push(&push, 1.0);
+            }
+        }
+    }
+
+    /// Asks the rows for the speeds that are missing in a motion with `qdd` and these `weight`s, so that nothing ends inside of
+    /// something else. False if none are.
+    pub(super) fn aim_lift(
+        &mut self,
+        m: &Model,
+        rows: &mut Rows,
+        pass: &Pass,
+        (qdd, weight): (&[f64], &[f64]),
+    ) -> bool {
+        if pass.mean {
+            for (u, (v0, (a, w))) in self.v1.iter_mut().zip(pass.v0.iter().zip(qdd.iter().zip(weight))) {
+                *u = v0 + w * pass.h * a;
+            }
+        } else {
+            end_velocities(m, pass, qdd, &mut self.v1);
+        }
+        kinematics(m, &mut self.end, pass.q, &self.v1);
+        let mut wanted = false;
+        for point in &self.points {
+            let way = pass.h * point.along(0, approach(&self.end, &point.touch, point.placed.point));
+            let (target, kind) = match point.bounce {
+                Some((_, gap)) => (gap, LiftKind::Exactly),
+                None => ((1.0 - ERP) * point.gap.min(0.0), LiftKind::AtLeast),
+            };
+            let missing = point.gap + way - target;
+            wanted |= missing < -FLUSH || (kind == LiftKind::Exactly && missing > FLUSH);
+            *rows.lift(point.block) = Lift { kind, bias: missing / pass.h, impulse: 0.0 };
+        }
+        wanted
+    }
+
+    /// Pushes with the impulses of the lift.
+    pub(super) fn push_lift(&self, response: &mut Response, rows: &mut Rows) {
+        for point in &self.points {
+            let force = point.axes[0] * rows.lift(point.block).impulse;
+            for push in pushes(&self.middle, &point.touch, point.placed.point, (force, V3::default())) {
+                response.push(&push, 1.0);
+            }
+        }
+    }
+
+    /// The contacts of the last step that carry something, at these poses.
+    pub fn shown<'a>(&'a self, k: &'a Kinematics) -> impl Iterator<Item = ContactPoint> + 'a {
+        let carrying = self.points.iter().filter(|p| p.impulse.normal > 0.0);
+        carrying.map(|p| {
+            let placed = p.touch.placed(k);
+            ContactPoint {
+                colliders: p.touch.pair.map(|c| c as usize),
+                point: placed.point,
+                normal: placed.normal,
+                depth: -placed.gap,
+                force: (p.axes[0] * p.impulse.normal + p.impulse.tangent) * (1.0 / self.h),
+            }
+        })
+    }
+
+    /// The deepest penetration at these poses, m.
+    pub fn depth(&self, k: &Kinematics) -> f64 {
+        self.points.iter().map(|p| -p.touch.placed(k).gap).fold(0.0, f64::max)
+    }
+}
+
+impl Point {
+    /// Where it is in the middle of the step, and the least normal velocity at its end.
+    ///
+    /// What persists has u₁ = 0 with J₁ and had u₀ = 0 with J₀; with the rows of the middle that is `Jₘ v₁ = (J₀ − Jₘ) v₀`, of
+    /// second order, and the contact does no work. What closes in the step may come as near as 0.
+    fn place(&mut self, middle: &Kinematics, pass: &Pass) {
+        self.placed = self.touch.placed(middle);
+        self.axes = axes(self.placed.normal);
+        self.middle_speed = self.placed.normal.dot(approach(middle, &self.touch, self.placed.point));
+        let touching = if pass.mean { self.start.1 - self.middle_speed } else { 0.0 };
+        let closing = if pass.mean { -2.0 * self.gap / pass.h - self.middle_speed } else { -self.gap / pass.h };
+        self.floor = touching.min(closing);
+    }
+
+    fn add_cone(&mut self, t: &mut Target, middle: &Kinematics) {
+        let wrench = |p: &Self, n: usize| (p.axes[n], V3::default());
+        self.block = self.add(t, Kind::Cone { friction: self.surface.friction }, (middle, &[0, 1, 2]), wrench);
+    }
+
+    /// Rows of rolling and of spinning friction, where the pair has them.
+    fn add_discs(&mut self, t: &mut Target, middle: &Kinematics, end: &Kinematics) {
+        let normal = t.rows.first_row(self.block);
+        let turning = turning(end, &self.touch);
+        let wrench = |p: &Self, n: usize| (V3::default(), p.axes[n]);
+        (self.rolling, self.spinning) = (None, None);
+        if self.surface.rolling > 0.0 {
+            let kind = Kind::Disc { ratio: self.surface.rolling, normal };
+            let block = self.add(t, kind, (middle, &[1, 2]), wrench);
+            for n in [1, 2] {
+                t.rows.row(block, n - 1).bias = self.along(n, turning);
+            }
+            self.rolling = Some(block);
+        }
+        if self.surface.spinning > 0.0 {
+            let kind = Kind::Disc { ratio: self.surface.spinning, normal };
+            let block = self.add(t, kind, (middle, &[0]), wrench);
+            t.rows.row(block, 0).bias = self.along(0, turning);
+            self.spinning = Some(block);
+        }
+    }
+
+    /// Adds a block of rows along some of the axes, of which `wrench` gives force and torque.
+    fn add(
+        &self,
+        t: &mut Target,
+        kind: Kind,
+        (middle, axes): (&Kinematics, &[usize]),
+        wrench: impl Fn(&Self, usize) -> (V3<f64>, V3<f64>),
+    ) -> usize {
+        t.ids.clear();
+        t.response.layout.join(self.touch.bodies[0], self.touch.bodies[1], t.ids);
+        let block = t.rows.add(kind, axes.len(), t.ids);
+        for (n, axis) in axes.iter().enumerate() {
+            let pushes = pushes(middle, &self.touch, self.placed.point, wrench(self, *axis));
+            t.response.row(t.m, t.ws, t.q, &pushes, t.rows.response(block, n));
+        }
+        t.rows.seal(block);
+        block
+    }
+
+    /// Velocities without impulses, minus the wanted ones.
+    fn aim(&mut self, rows: &mut Rows, middle: &Kinematics, end: &Kinematics) {
+        let free = approach(end, &self.touch, self.placed.point);
+        let curve = approach(middle, &self.touch, self.placed.point) - self.start.0;
+        self.free = self.along(0, free);
+        rows.row(self.block, 0).bias = self.free - self.floor;
+        for n in [1, 2] {
+            rows.row(self.block, n).bias = self.along(n, free + curve);
+        }
+    }
+
+    fn along(&self, n: usize, v: V3<f64>) -> f64 {
+        self.axes[n].dot(v)
+    }
+
+    /// The bounce of a contact that closes within the step: it falls freely until then, leaves with `restitution` times the
+    /// speed that it has then, and is slowed down by the same acceleration for the rest of the step. So a bounce neither gains nor
+    /// loses by the step. False if it would come back within the step: then it rests.
+    fn rebound(&mut self, rows: &mut Rows, h: f64) -> bool {
+        let (u, a) = (self.middle_speed, (self.free - self.middle_speed) / h);
+        let Some(t) = closing(self.gap, u, a).filter(|t| *t <= h) else { return false };
+        let (leaves, rest) = (-self.surface.restitution * (u + a * t), h - t);
+        let speed = leaves + a * rest;
+        if speed <= 0.0 {
+            return false;
+        }
+        self.bounce = Some((speed, (leaves + 0.5 * a * rest) * rest));
+        rows.row(self.block, 0).bias = self.free - speed;
+        true
+    }
+
+    fn write(&self, rows: &mut Rows, x: &Impulse) {
+        let cone = [x.normal, self.along(1, x.tangent), self.along(2, x.tangent)];
+        for (n, x) in cone.into_iter().enumerate() {
+            rows.row(self.block, n).impulse = x;
+        }
+        if let Some(block) = self.rolling {
+            rows.row(block, 0).impulse = self.along(1, x.rolling);
+            rows.row(block, 1).impulse = self.along(2, x.rolling);
+        }
+        if let Some(block) = self.spinning {
+            rows.row(block, 0).impulse = x.spinning;
+        }
+    }
+
+    fn read(&self, rows: &Rows) -> Impulse {
+        let x = |block: Option<usize>, n: usize| block.map_or(0.0, |b| rows.impulse(b, n));
+        let cone = Some(self.block);
+        Impulse {
+            normal: x(cone, 0),
+            tangent: self.axes[1] * x(cone, 1) + self.axes[2] * x(cone, 2),
+            rolling: self.axes[1] * x(self.rolling, 0) + self.axes[2] * x(self.rolling, 1),
+            spinning: x(self.spinning, 0),
+        }
+    }
+}
+
+/// Velocities at the end of the step (nv). A floating body's are advanced along the axes of the body in the middle of the step;
+/// where coordinates move with the velocities at the end, along those of the world.
+fn end_velocities(m: &Model, pass: &Pass, qdd: &[f64], out: &mut [f64]) {
+    for (v1, (v0, a)) in out.iter_mut().zip(pass.v0.iter().zip(qdd)) {
+        *v1 = v0 + pass.h * a;
+    }
+    if pass.mean {
+        return;
+    }
+    for b in m.bodies.iter().skip(1).filter(|b| b.joint == JointType::Floating) {
+        let v = |n: usize| V3::new(pass.v0[b.v + n], pass.v0[b.v + n + 1], pass.v0[b.v + n + 2]);
+        let turned = v(0).cross(v(3)) * pass.h;
+        for (to, from) in out[b.v + 3..b.v + 6].iter_mut().zip([turned.x, turned.y, turned.z]) {
+            *to += from;
+        }
+    }
+}
+
+/// Where rows go to.
+struct Target<'a> {
+    m: &'a Model,
+    ws: &'a Workspace<f64>,
+    response: &'a mut Response,
+    rows: &'a mut Rows,
+    ids: &'a mut Vec<u32>,
+    q: &'a [f64],
+}
+
+impl Impulse {
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            normal: self.normal * factor,
+            tangent: self.tangent * factor,
+            rolling: self.rolling * factor,
+            spinning: self.spinning * factor,
+        }
+    }
+
+    fn mixed(&self, other: &Self, share: f64) -> Self {
+        let (own, other) = (self.scaled(1.0 - share), other.scaled(share));
+        Self {
+            normal: own.normal + other.normal,
+            tangent: own.tangent + other.tangent,
+            rolling: own.rolling + other.rolling,
+            spinning: own.spinning + other.spinning,
+        }
+    }
+}
+
+/// Where a parabola that is `p` at 0, ½ and 1, with p[0] ≤ 0 < p[2], crosses 0.
+fn crossing(p: [f64; 3]) -> f64 {
+    let (a, b) = (2.0 * (p[0] - 2.0 * p[1] + p[2]), 4.0 * p[1] - 3.0 * p[0] - p[2]);
+    let root = (b * b - 4.0 * a * p[0]).max(0.0).sqrt();
+    let s = if b >= 0.0 { -2.0 * p[0] / (b + root) } else { (root - b) / (2.0 * a) };
+    if s.is_finite() { s.max(0.0).min(1.0) } else { 0.0 }
+}
+
+/// When a gap closes that opens with speed `u` and acceleration `a`; 0 if it is closed and not opening.
+fn closing(gap: f64, u: f64, a: f64) -> Option<f64> {
+    if gap <= 0.0 {
+        return (u < 0.0).then_some(0.0);
+    }
+    let root = u * u - 2.0 * a * gap;
+    if root < 0.0 {
+        return None;
+    }
+    // The smaller root of gap + u t + a t²/2, without cancellation.
+    let t = 2.0 * gap / (root.sqrt() - u);
+    (t >= 0.0).then_some(t)
+}
+
+/// Velocity of side 1 against side 0 at a point, along the world's axes.
+fn approach(k: &Kinematics, touch: &Touch, point: V3<f64>) -> V3<f64> {
+    let at = |body: usize| k.r[body].mv(k.v[body]) + k.r[body].mv(k.w[body]).cross(point - k.p[body]);
+    at(touch.bodies[1]) - at(touch.bodies[0])
+}
+
+/// Angular velocity of side 1 against side 0, along the world's axes.
+fn turning(k: &Kinematics, touch: &Touch) -> V3<f64> {
+    let of = |body: usize| k.r[body].mv(k.w[body]);
+    of(touch.bodies[1]) - of(touch.bodies[0])
+}
+
+/// A force and a torque (world) at a point on side 1, and their opposites on side 0.
+fn pushes(k: &Kinematics, touch: &Touch, point: V3<f64>, (force, torque): (V3<f64>, V3<f64>)) -> [Push; 2] {
+    [(0, -1.0), (1, 1.0)].map(|(side, sign)| {
+        let body = touch.bodies[side];
+        let (r, arm) = (&k.r[body], point - k.p[body]);
+        let (f, t) = (force * sign, torque * sign);
+        Push { body, torque: r.tv(arm.cross_add(f, t)), force: r.tv(f), ..Push::default() }
+    })
+}
+
+/// The normal and two tangents, right-handed.
+fn axes(n: V3<f64>) -> [V3<f64>; 3] {
+    let (x, y) = (V3::new(1.0, 0.0, 0.0), V3::new(0.0, 1.0, 0.0));
+    let side = if n.x.abs() < 0.7 { x } else { y };
+    let t = side - n * n.dot(side);
+    let t = t * (1.0 / t.dot(t).sqrt());
+    [n, t, n.cross(t)]
+}
