@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 mod touching;
-use touching::*;
 use realnoid::engine::State;
 use realnoid::math::Vec3;
 use realnoid::world::{Integrator, World};
+use touching::*;
 
 fn start(w: &mut World, z: f64, angular: Vec3, linear: Vec3) {
     let m = w.model().clone();
@@ -31,7 +31,12 @@ fn explore() {
             }
             let x = w.state().q[0];
             let exact = 0.5 * 5.0 / 7.0 * 9.81 * th.sin();
-            println!("{integrator:?} {h} roll {:e} z {:e} pen {:e}", x / exact - 1.0, w.state().q[2] - 0.1, w.stats().worst_penetration);
+            println!(
+                "{integrator:?} {h} roll {:e} z {:e} pen {:e}",
+                x / exact - 1.0,
+                w.state().q[2] - 0.1,
+                w.stats().worst_penetration
+            );
             let mut w = world(cuboid(1.0, [0.1, 0.05, 0.02], surface(1.0), ground(0.3)), settings(h, integrator));
             start(&mut w, 0.02, Vec3::zeros(), Vec3::new(0.6, 0.8, 0.0));
             for _ in 0..n {
@@ -39,7 +44,13 @@ fn explore() {
             }
             let d = w.state().q[0].hypot(w.state().q[1]);
             let exact = 1.0 / (2.0 * 0.3 * 9.81);
-            println!("   slide {:e} side {:e} z {:e} {:?}", d / exact - 1.0, w.state().q[0] * 0.8 - w.state().q[1] * 0.6, w.state().q[2] - 0.02, w.stats());
+            println!(
+                "   slide {:e} side {:e} z {:e} {:?}",
+                d / exact - 1.0,
+                w.state().q[0] * 0.8 - w.state().q[1] * 0.6,
+                w.state().q[2] - 0.02,
+                w.stats()
+            );
         }
     }
 }
@@ -63,11 +74,19 @@ fn explore2() {
             if last > 0.0 && v <= 0.0 {
                 apex.push(w.state().q[2] - 0.1);
             }
-            if v != 0.0 { rest = i as f64 * 1e-3; }
+            if v != 0.0 {
+                rest = i as f64 * 1e-3;
+            }
             last = v;
         }
         let t = (2.0f64 / 9.81).sqrt() * (1.0 + e) / (1.0 - e);
-        println!("bounce e {e}: {:?} rest {rest} exact {t} z {:e} pen {:e} n {}", &apex[..apex.len().min(5)], w.state().q[2] - 0.1, w.stats().worst_penetration, apex.len());
+        println!(
+            "bounce e {e}: {:?} rest {rest} exact {t} z {:e} pen {:e} n {}",
+            &apex[..apex.len().min(5)],
+            w.state().q[2] - 0.1,
+            w.stats().worst_penetration,
+            apex.len()
+        );
     }
     // stick
     for (deg, mu) in [(20.0f64, 0.5), (26.0, 0.5), (27.0, 0.5)] {
@@ -79,7 +98,12 @@ fn explore2() {
         for _ in 0..10000 {
             w.advance();
         }
-        println!("stick {deg}: x {:e} exact {:e} {:?}", w.state().q[0], 50.0 * 9.81 * (th.sin() - mu * th.cos()), w.stats().unsettled_steps);
+        println!(
+            "stick {deg}: x {:e} exact {:e} {:?}",
+            w.state().q[0],
+            50.0 * 9.81 * (th.sin() - mu * th.cos()),
+            w.stats().unsettled_steps
+        );
     }
     // tumbling cuboid
     for h in [5e-3, 1e-3, 2.5e-4] {
@@ -97,6 +121,11 @@ fn explore2() {
             most = most.max(d);
             e = f;
         }
-        println!("tumble {h}: grown {grown:e} most {most:e} rest {:e} us {} {:?}", e.kinetic, c.elapsed().as_secs_f64() * h / 5.0 * 1e6, w.stats());
+        println!(
+            "tumble {h}: grown {grown:e} most {most:e} rest {:e} us {} {:?}",
+            e.kinetic,
+            c.elapsed().as_secs_f64() * h / 5.0 * 1e6,
+            w.stats()
+        );
     }
 }

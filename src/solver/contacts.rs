@@ -172,7 +172,8 @@ impl Contacts {
             while known.peek().is_some_and(|old| old.touch.key() < touch.key()) {
                 known.next();
             }
-            let impulse = known.peek().filter(|old| old.touch.key() == touch.key()).map(|old| old.impulse.scaled(scale));
+            let impulse =
+                known.peek().filter(|old| old.touch.key() == touch.key()).map(|old| old.impulse.scaled(scale));
             self.worst = self.worst.max(-placed.gap);
             self.points.push(Point {
                 touch: *touch,
@@ -232,7 +233,8 @@ impl Contacts {
         kinematics(m, &mut self.end, pass.q, &self.v1);
         for point in &mut self.points {
             point.place(&self.middle, pass);
-            let mut target = Target { m, ws, response: &mut *response, rows: &mut *rows, ids: &mut self.ids, q: pass.q };
+            let mut target =
+                Target { m, ws, response: &mut *response, rows: &mut *rows, ids: &mut self.ids, q: pass.q };
             point.add_cone(&mut target, &self.middle);
             point.aim(target.rows, &self.middle, &self.end);
             point.add_discs(&mut target, &self.middle, &self.end);
