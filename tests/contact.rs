@@ -129,3 +129,59 @@ fn explore2() {
         );
     }
 }
+
+#[test]
+fn explore3() {
+    for ratio in [1.0, 1000.0] {
+        for h in [5e-3, 1e-3] {
+            let s = settings(h, Integrator::ImplicitMidpoint);
+            let mut list = vec![(1.0, 0.1); 5];
+            list[4].0 = ratio;
+            let mut w = world(balls(&list, surface(1.0), ground(0.5)), s);
+            let m = w.model().clone();
+            let mut st = State::initial(&m);
+            for k in 0..5 {
+                st.q[7 * k + 2] = 0.1 + 0.2 * k as f64;
+            }
+            w.set_initial_state(st);
+            let c = std::time::Instant::now();
+            let n = (10.0 / h) as usize;
+            for _ in 0..n {
+                w.advance();
+            }
+            println!(
+                "tower {ratio} {h}: x {:e} z {:e} top {:e} kin {:e} us {} {:?}",
+                w.state().q[28],
+                w.state().q[2] - 0.1,
+                w.state().q[30] - 0.9,
+                w.energy().kinetic,
+                c.elapsed().as_secs_f64() * 1e6 / n as f64,
+                w.stats()
+            );
+        }
+    }
+}
+
+#[test]
+fn explore4() {
+    // sleeping
+    let s = settings(1e-3, Integrator::ImplicitMidpoint);
+    let mut m = balls(&[(1.0, 0.1), (1.0, 0.1)], surface(1.0), ground(0.5));
+    for l in &mut m.links {
+        l.deactivation = Some(realnoid::model::Deactivation { linear: 0.01, angular: 0.01, after: 0.2 });
+    }
+    m.effects.deactivation = true;
+    let mut w = world(m, s);
+    let m = w.model().clone();
+    let mut st = State::initial(&m);
+    st.q[2] = 0.1;
+    st.q[7] = 0.19;
+    st.q[9] = 1.0;
+    w.set_initial_state(st);
+    for i in 0..6000 {
+        w.advance();
+        if i % 200 == 0 {
+            println!("{i} q {:?} {:?} n {}", &w.state().q[0..3], &w.state().q[7..10], w.contacts().len());
+        }
+    }
+}

@@ -209,7 +209,7 @@ pub struct SimulateArgs {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub every: Option<f64>,
     /// Switch an effect off: gravity, damping, friction, limits, drives, rotor_inertia, compliance, mimic, breaking,
-    /// body_damping, contact.
+    /// body_damping, contact, deactivation.
     #[arg(long, value_name = "EFFECT")]
     pub off: Vec<String>,
     /// Switch an effect on.

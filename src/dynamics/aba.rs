@@ -53,6 +53,9 @@ pub struct Workspace<T> {
     pub(crate) damped: Vec<Damped<T>>,
     /// Per body, if any is damped: room for [`super::damping_powers`].
     pub(crate) wrenches: Vec<Spatial<T>>,
+    /// The bodies that take part, first and one past the last, ascending: whole trees. The accelerations of the others stay
+    /// as they are.
+    pub active: Vec<(usize, usize)>,
 }
 
 impl<T: Real> Workspace<T> {
@@ -71,6 +74,7 @@ impl<T: Real> Workspace<T> {
             reaction: vec![o; nv],
             damped: Vec::with_capacity(model.dampings.len()),
             wrenches: vec![Spatial::default(); if model.dampings.is_empty() { 0 } else { n }],
+            active: vec![(1, n)],
         }
     }
 
@@ -160,20 +164,26 @@ fn kernel<T: Real, const HYBRID: bool>(
     qdd: &mut [T],
 ) {
     ws.kin[0] = Kin { r: M3::identity(), ..Kin::default() };
-    for (i, b) in m.bodies.iter().enumerate().skip(1) {
-        let kin = moved(b, q, v, &ws.kin[b.parent]);
-        ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
-        ws.kin[i] = kin;
-    }
-    if HYBRID && !ws.damped.is_empty() {
-        resist(m, ws);
-    }
-    for i in (1..m.bodies.len()).rev() {
-        inward::<T, HYBRID>(m, ws, i, (q, v), tau);
+    for k in 0..ws.active.len() {
+        let (from, to) = ws.active[k];
+        for (i, b) in m.bodies.iter().enumerate().take(to).skip(from) {
+            let kin = moved(b, q, v, &ws.kin[b.parent]);
+            ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
+            ws.kin[i] = kin;
+        }
+        if HYBRID && !ws.damped.is_empty() {
+            resist(m, ws, from..to);
+        }
+        for i in (from..to).rev() {
+            inward::<T, HYBRID>(m, ws, i, (q, v), tau);
+        }
     }
     ws.start(gravity);
-    for i in 1..m.bodies.len() {
-        outward::<T, HYBRID>(m, ws, i, (q, v), qdd);
+    for k in 0..ws.active.len() {
+        let (from, to) = ws.active[k];
+        for i in from..to {
+            outward::<T, HYBRID>(m, ws, i, (q, v), qdd);
+        }
     }
 }
 

@@ -13,6 +13,7 @@ use super::articulated::Spatial;
 use super::joint::universal_axis;
 use crate::math::{Real, S3, V3};
 use crate::model::{JointType, Model};
+use std::ops::Range;
 
 /// Which velocity a step takes its damping from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,10 +65,10 @@ pub fn write_damping(m: &Model, ws: &mut Workspace<f64>, step: (f64, Scheme), on
     ws.damped.extend(damped);
 }
 
-/// Adds the wrenches to the bias forces of their bodies, whose velocities are those of the pass.
-pub(crate) fn resist<T: Real>(m: &Model, ws: &mut Workspace<T>) {
+/// Adds the wrenches to the bias forces of these bodies, whose velocities are those of the pass.
+pub(crate) fn resist<T: Real>(m: &Model, ws: &mut Workspace<T>, bodies: Range<usize>) {
     let zero = T::of(0.0);
-    for d in &mut ws.damped {
+    for d in ws.damped.iter_mut().filter(|d| bodies.contains(&d.body)) {
         let b = &m.bodies[d.body];
         let (w, v) = (ws.kin[d.body].w, ws.kin[d.body].v);
         let (mc, mass) = (V3::<T>::of(b.mc), T::of(b.mass));

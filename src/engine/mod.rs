@@ -8,6 +8,7 @@ mod honour;
 mod midpoint;
 mod rbx;
 mod rk4;
+mod sleep;
 
 pub use apart::come_apart;
 pub use breaking::{BreakWatch, Overload};

@@ -2,6 +2,7 @@
 
 use super::midpoint::Midpoint;
 use super::rk4::Stages;
+use super::sleep::Sleep;
 use crate::dynamics::{Kinematics, Scheme, Workspace, exponential_step, move_coordinates, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
@@ -240,6 +241,8 @@ pub struct Rbx {
     /// Speeds that keep bodies out of each other.
     pub(super) lift: Vec<f64>,
     unlifted: Vec<f64>,
+    /// `None` if nothing ever rests.
+    pub(super) sleep: Option<Sleep>,
     /// The step, s, of which a halved one is a part.
     pub(super) whole_step: f64,
     midpoint: Option<Midpoint>,
@@ -257,6 +260,7 @@ impl Rbx {
             before: state.clone(),
             lift: vec![0.0; m.nv],
             unlifted: vec![0.0; m.nq],
+            sleep: Sleep::new(m),
             whole_step: 0.0,
             midpoint: None,
             stages: None,
@@ -271,9 +275,15 @@ impl Rbx {
     }
 
     /// Takes over a state; the steps before it are forgotten.
-    pub fn restart(&mut self, state: &State) {
+    pub fn restart(&mut self, m: &Model, state: &State) {
         self.state.copy_from(state);
         self.axes.reset();
+        self.wake(m);
+        self.forget();
+    }
+
+    /// Forgets the accelerations of the last step.
+    pub(super) fn forget(&mut self) {
         if let Some(midpoint) = &mut self.midpoint {
             midpoint.forget();
         }
@@ -282,6 +292,9 @@ impl Rbx {
     /// One step: the laws of the axes, then the integrator; a state that is not finite is not taken.
     pub fn step(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings) -> StepReport {
         let mut report = StepReport::default();
+        if self.rests(m, commands, s.gravity) {
+            return report;
+        }
         self.before.copy_from(&self.state);
         self.whole_step = s.h;
         let explicit = s.integrator == Integrator::Rk4;
@@ -302,6 +315,7 @@ impl Rbx {
             self.state.copy_from(&self.before);
             report.diverged = true;
         }
+        self.observe(m, s);
         report
     }
 

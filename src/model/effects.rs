@@ -3,7 +3,7 @@
 use super::Model;
 
 /// Names for `--on` and `--off`, in the order of the fields of [`Effects`].
-pub const EFFECT_NAMES: [&str; 11] = [
+pub const EFFECT_NAMES: [&str; 12] = [
     "gravity",
     "damping",
     "friction",
@@ -15,6 +15,7 @@ pub const EFFECT_NAMES: [&str; 11] = [
     "breaking",
     "body_damping",
     "contact",
+    "deactivation",
 ];
 
 /// One switch per effect.
@@ -42,6 +43,8 @@ pub struct Effects {
     pub body_damping: bool,
     /// Contacts of bodies with each other and with the ground.
     pub contact: bool,
+    /// Bodies at rest leave the computation (`<deactivate>`).
+    pub deactivation: bool,
 }
 
 impl Effects {
@@ -60,6 +63,7 @@ impl Effects {
             breaking: !m.breakables.is_empty(),
             body_damping: !m.dampings.is_empty(),
             contact: m.colliders.len() > 1,
+            deactivation: m.links.iter().any(|l| l.deactivation.is_some()),
         }
     }
     /// No effect at all.
@@ -75,6 +79,7 @@ impl Effects {
         breaking: false,
         body_damping: false,
         contact: false,
+        deactivation: false,
     };
     /// The switches in the order of [`EFFECT_NAMES`].
     pub fn as_array(&self) -> [bool; EFFECT_NAMES.len()] {
@@ -90,6 +95,7 @@ impl Effects {
             self.breaking,
             self.body_damping,
             self.contact,
+            self.deactivation,
         ]
     }
     /// Switches one effect; `false` if there is none of that name.
@@ -107,6 +113,7 @@ impl Effects {
             "breaking" => &mut self.breaking,
             "body_damping" => &mut self.body_damping,
             "contact" => &mut self.contact,
+            "deactivation" => &mut self.deactivation,
             _ => return false,
         };
         *field = on;

@@ -106,8 +106,21 @@ pub struct LinkInfo {
     pub mass: f64,
     /// The joint whose link it belongs to; `None`: fixed to the root.
     pub membership: Option<Membership>,
+    /// When it may leave the computation (B-9); `None`: never.
+    pub deactivation: Option<Deactivation>,
     /// Where the frame is.
     pub frame: LinkFrame,
+}
+
+/// A body below both thresholds for longer than the delay leaves the computation (B-9).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deactivation {
+    /// Speed of the centre of mass, m/s.
+    pub linear: f64,
+    /// rad/s.
+    pub angular: f64,
+    /// s.
+    pub after: f64,
 }
 
 /// How a link's frame follows from the state.

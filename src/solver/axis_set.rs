@@ -91,6 +91,8 @@ pub struct AxisSet {
     pub(super) paid: (f64, f64),
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
+    /// Per axis: its tree is out of the computation.
+    pub resting: Vec<bool>,
     pub(super) mean: bool,
     /// Sweeps over the rows of contacts, at most.
     pub(super) sweeps: u32,
@@ -135,6 +137,7 @@ impl AxisSet {
             work: Work::default(),
             paid: (0.0, 0.0),
             worst_stop: 0.0,
+            resting: vec![false; n],
             mean: false,
             sweeps: 1,
             best: usize::MAX,
@@ -147,6 +150,7 @@ impl AxisSet {
         self.memory.fill(0);
         self.effort.fill(0.0);
         self.stiff.fill(false);
+        self.resting.fill(false);
         self.brakes.fill(Brakes::default());
         (self.work, self.worst_stop) = (Work::default(), 0.0);
         if let Some(couplings) = &mut self.couplings {
@@ -159,6 +163,9 @@ impl AxisSet {
         let at_pole = self.update_rates(m, start.state.angles);
         (self.best, self.patience) = (usize::MAX, PATIENCE);
         for (i, axis) in m.axes.iter().enumerate() {
+            if self.resting[i] {
+                continue;
+            }
             let (q, v) = self.axis_state(m, axis, start.state);
             self.speed[i] = v;
             if effects.limits {
@@ -255,6 +262,9 @@ impl AxisSet {
         let (mut count, mut breaking) = (0, 0);
         for (i, axis) in m.axes.iter().enumerate() {
             self.moves[i] = 0;
+            if self.resting[i] {
+                continue;
+            }
             let (law, place) = (&self.laws[i], self.place[i]);
             if place % 2 == 1 {
                 self.moves[i] = law.leaves_riser(place / 2, self.riser_torque(m, ws, i, qdd));
@@ -314,6 +324,9 @@ impl AxisSet {
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
         self.paid = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
+            if self.resting[i] {
+                continue;
+            }
             let (law, place) = (&self.laws[i], self.place[i]);
             let acceleration = self.axis_rate(m, axis, qdd);
             let end = self.speed[i] + h * acceleration;
@@ -360,6 +373,13 @@ impl AxisSet {
         match end {
             None => contacts.touching(),
             Some(s) => contacts.overlap(m, s.q, s.v),
+        }
+    }
+
+    /// Tells the contacts which bodies rest.
+    pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
+        if let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) {
+            contacts.rest(rests);
         }
     }
 

@@ -21,6 +21,8 @@ const FLUSH: f64 = 1e-10;
 struct Point {
     touch: Touch,
     surface: Surface,
+    /// The bodies that it acts on: 0 for one that rests.
+    acts: [usize; 2],
     /// At the start of the step: gap, and J₀ v₀ as a vector of the world and its normal part.
     gap: f64,
     start: (V3<f64>, f64),
@@ -92,6 +94,8 @@ pub(super) struct Pass<'a> {
 pub struct Contacts {
     detector: Detector,
     touches: Vec<Touch>,
+    /// Per body: it rests.
+    rests: Vec<bool>,
     points: Vec<Point>,
     /// Of the last step, ordered by key.
     old: Vec<Point>,
@@ -118,6 +122,7 @@ impl Contacts {
         Some(Self {
             detector,
             touches: vec![],
+            rests: vec![false; m.bodies.len()],
             points: vec![],
             old: vec![],
             start: k.clone(),
@@ -136,7 +141,27 @@ impl Contacts {
     pub fn reset(&mut self) {
         self.points.clear();
         self.old.clear();
+        self.rests.fill(false);
         (self.h, self.worst) = (0.0, 0.0);
+    }
+
+    /// Which bodies rest: to what moves they are as heavy as the world, and what lies between them stays as it is.
+    pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
+        self.rests.iter_mut().enumerate().for_each(|(body, flag)| *flag = rests(body));
+    }
+
+    /// The bodies of touches that are closed at these poses, or will be within `ahead` seconds of their motion.
+    pub fn near<'a>(&'a self, k: &'a Kinematics, ahead: f64) -> impl Iterator<Item = [usize; 2]> + Clone + 'a {
+        let closes = move |p: &&Point| {
+            let placed = p.touch.placed(k);
+            placed.gap + ahead * placed.normal.dot(approach(k, &p.touch, placed.point)).min(0.0) < FLUSH
+        };
+        self.points.iter().filter(closes).map(|p| p.touch.bodies)
+    }
+
+    /// The bodies of touches that were closed at the start of the last step.
+    pub fn touching_bodies(&self) -> impl Iterator<Item = [usize; 2]> + Clone + '_ {
+        self.points.iter().filter(|p| p.gap < FLUSH).map(|p| p.touch.bodies)
     }
 
     /// Does something touch at the start of the step?
@@ -153,9 +178,9 @@ impl Contacts {
         self.depth(&self.end) > 0.0
     }
 
-    /// Is there nothing near?
+    /// Is there nothing near that moves?
     pub fn is_empty(&self) -> bool {
-        self.points.is_empty()
+        !self.points.iter().any(Point::is_live)
     }
 
     /// Finds the touches of a step of `h` from the state `q`, `v`.
@@ -175,8 +200,10 @@ impl Contacts {
             let impulse =
                 known.peek().filter(|old| old.touch.key() == touch.key()).map(|old| old.impulse.scaled(scale));
             self.worst = self.worst.max(-placed.gap);
+            let acts = touch.bodies.map(|b| if self.rests[b] { 0 } else { b });
             self.points.push(Point {
                 touch: *touch,
+                acts,
                 surface: self.detector.surface(touch.pair),
                 gap: placed.gap,
                 start: (u, placed.normal.dot(u)),
@@ -231,7 +258,7 @@ impl Contacts {
         kinematics(m, &mut self.middle, pass.q, pass.v0);
         end_velocities(m, pass, qdd, &mut self.v1);
         kinematics(m, &mut self.end, pass.q, &self.v1);
-        for point in &mut self.points {
+        for point in self.points.iter_mut().filter(|p| p.is_live()) {
             point.place(&self.middle, pass);
             let mut target =
                 Target { m, ws, response: &mut *response, rows: &mut *rows, ids: &mut self.ids, q: pass.q };
@@ -245,7 +272,7 @@ impl Contacts {
     /// After the first solve: contacts that bounce. True if there are any; then the rows are to be solved again.
     fn bounce(&mut self, rows: &mut Rows, h: f64) -> bool {
         let mut any = false;
-        for point in &mut self.points {
+        for point in self.points.iter_mut().filter(|p| p.is_live()) {
             point.bounce = None;
             if point.surface.restitution > 0.0 && rows.impulse(point.block, 0) > 0.0 {
                 any |= point.rebound(rows, h);
@@ -257,7 +284,7 @@ impl Contacts {
     /// Reduces the bounces to what leaves no more energy than there was: with friction, Newton's law of restitution can make
     /// some. Between the solution without bounces and the one with them the work is a parabola.
     fn temper(&mut self, rows: &mut Rows) {
-        for point in &mut self.points {
+        for point in self.points.iter_mut().filter(|p| p.is_live()) {
             point.bounced = point.read(rows);
         }
         let (plain, half, full) = (self.work(rows, 0.0), self.work(rows, 0.5), self.work(rows, 1.0));
@@ -269,7 +296,7 @@ impl Contacts {
 
     /// Impulses between those without bounces (share 0) and those with them (1).
     fn blend(&self, rows: &mut Rows, share: f64) {
-        for point in &self.points {
+        for point in self.points.iter().filter(|p| p.is_live()) {
             point.write(rows, &point.impulse.mixed(&point.bounced, share));
         }
         rows.gather();
@@ -279,20 +306,20 @@ impl Contacts {
     fn work(&self, rows: &mut Rows, share: f64) -> f64 {
         self.blend(rows, share);
         let wanted = |p: &Point| rows.impulse(p.block, 0) * (p.free - rows.rows()[rows.first_row(p.block)].bias);
-        rows.work() + self.points.iter().map(wanted).sum::<f64>()
+        rows.work() + self.points.iter().filter(|p| p.is_live()).map(wanted).sum::<f64>()
     }
 
     fn take(&mut self, rows: &Rows) {
-        for point in &mut self.points {
+        for point in self.points.iter_mut().filter(|p| p.is_live()) {
             point.impulse = point.read(rows);
         }
     }
 
     fn push(&self, response: &mut Response, h: f64) {
-        for point in &self.points {
+        for point in self.points.iter().filter(|p| p.is_live()) {
             let force = (point.axes[0] * point.impulse.normal + point.impulse.tangent) * (1.0 / h);
             let torque = (point.axes[0] * point.impulse.spinning + point.impulse.rolling) * (1.0 / h);
-            for push in pushes(&self.middle, &point.touch, point.placed.point, (force, torque)) {
+            for push in point.pushes(&self.middle, (force, torque)) {
                 response.push(&push, 1.0);
             }
         }
@@ -316,7 +343,7 @@ impl Contacts {
         }
         kinematics(m, &mut self.end, pass.q, &self.v1);
         let mut wanted = false;
-        for point in &self.points {
+        for point in self.points.iter().filter(|p| p.is_live()) {
             let way = pass.h * point.along(0, approach(&self.end, &point.touch, point.placed.point));
             let (target, kind) = match point.bounce {
                 Some((_, gap)) => (gap, LiftKind::Exactly),
@@ -331,9 +358,9 @@ impl Contacts {
 
     /// Pushes with the impulses of the lift.
     pub(super) fn push_lift(&self, response: &mut Response, rows: &mut Rows) {
-        for point in &self.points {
+        for point in self.points.iter().filter(|p| p.is_live()) {
             let force = point.axes[0] * rows.lift(point.block).impulse;
-            for push in pushes(&self.middle, &point.touch, point.placed.point, (force, V3::default())) {
+            for push in point.pushes(&self.middle, (force, V3::default())) {
                 response.push(&push, 1.0);
             }
         }
@@ -410,10 +437,10 @@ impl Point {
         wrench: impl Fn(&Self, usize) -> (V3<f64>, V3<f64>),
     ) -> usize {
         t.ids.clear();
-        t.response.layout.join(self.touch.bodies[0], self.touch.bodies[1], t.ids);
+        t.response.layout.join(self.acts[0], self.acts[1], t.ids);
         let block = t.rows.add(kind, axes.len(), t.ids);
         for (n, axis) in axes.iter().enumerate() {
-            let pushes = pushes(middle, &self.touch, self.placed.point, wrench(self, *axis));
+            let pushes = self.pushes(middle, wrench(self, *axis));
             t.response.row(t.m, t.ws, t.q, &pushes, t.rows.response(block, n));
         }
         t.rows.seal(block);
@@ -429,6 +456,21 @@ impl Point {
         for n in [1, 2] {
             rows.row(self.block, n).bias = self.along(n, free + curve);
         }
+    }
+
+    /// Between bodies that both rest, it stays as it was.
+    fn is_live(&self) -> bool {
+        self.acts != [0, 0]
+    }
+
+    /// A force and a torque (world) at the point on side 1, and their opposites on side 0.
+    fn pushes(&self, k: &Kinematics, (force, torque): (V3<f64>, V3<f64>)) -> [Push; 2] {
+        [(0, -1.0), (1, 1.0)].map(|(side, sign)| {
+            let body = self.acts[side];
+            let (r, arm) = (&k.r[body], self.placed.point - k.p[body]);
+            let (f, t) = (force * sign, torque * sign);
+            Push { body, torque: r.tv(arm.cross_add(f, t)), force: r.tv(f), ..Push::default() }
+        })
     }
 
     fn along(&self, n: usize, v: V3<f64>) -> f64 {
@@ -558,16 +600,6 @@ fn approach(k: &Kinematics, touch: &Touch, point: V3<f64>) -> V3<f64> {
 fn turning(k: &Kinematics, touch: &Touch) -> V3<f64> {
     let of = |body: usize| k.r[body].mv(k.w[body]);
     of(touch.bodies[1]) - of(touch.bodies[0])
-}
-
-/// A force and a torque (world) at a point on side 1, and their opposites on side 0.
-fn pushes(k: &Kinematics, touch: &Touch, point: V3<f64>, (force, torque): (V3<f64>, V3<f64>)) -> [Push; 2] {
-    [(0, -1.0), (1, 1.0)].map(|(side, sign)| {
-        let body = touch.bodies[side];
-        let (r, arm) = (&k.r[body], point - k.p[body]);
-        let (f, t) = (force * sign, torque * sign);
-        Push { body, torque: r.tv(arm.cross_add(f, t)), force: r.tv(f), ..Push::default() }
-    })
 }
 
 /// The normal and two tangents, right-handed.

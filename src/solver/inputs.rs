@@ -18,6 +18,9 @@ impl AxisSet {
     pub(super) fn write_inputs(&mut self, m: &Model, ws: &mut Workspace<f64>, h: f64) {
         clear_balls(ws);
         for i in 0..m.axes.len() {
+            if self.resting[i] {
+                continue;
+            }
             let (law, place, v) = (&self.laws[i], self.place[i], self.speed[i]);
             let input = if place % 2 == 1 {
                 Input::Locked((law.knots[place / 2].speed - v) / h)

@@ -230,7 +230,7 @@ impl World {
         if let Some(model) = self.unmoved.take() {
             self.model = model;
         }
-        self.engine.restart(&self.initial);
+        self.engine.restart(&self.model, &self.initial);
         for (i, axis) in self.model.axes.iter().enumerate() {
             self.commands[i] = match axis.mode {
                 Mode::Idle => AxisCommand::IDLE,

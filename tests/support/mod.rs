@@ -108,6 +108,7 @@ fn add_axes(m: &mut Model) {
         fixed: true,
         monitor: None,
         membership: None,
+        deactivation: None,
         mass: 0.0,
         frame: LinkFrame::OnBody { body: 0, offset: realnoid::math::Pose::identity() },
     });

@@ -75,3 +75,23 @@ pub fn cuboid(mass: f64, half: [f64; 3], own: Surface, floor: Collider) -> Model
 pub fn world(m: Model, settings: Settings) -> World {
     World::new(Arc::new(m), settings).unwrap()
 }
+
+/// Free balls (mass, radius), one link each: b0, b1, …, on a floor.
+pub fn balls(list: &[(f64, f64)], own: Surface, floor: Collider) -> Model {
+    let mut urdf = String::from(r#"<robot name="r"><link name="w"/>"#);
+    for (k, (mass, radius)) in list.iter().enumerate() {
+        let i = 0.4 * mass * radius * radius;
+        urdf += &format!(
+            r#"<link name="b{k}"><inertial><mass value="{mass}"/><inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial></link>
+               <joint name="j{k}" type="floating"><parent link="w"/><child link="b{k}"/></joint>"#
+        );
+    }
+    urdf += "</robot>";
+    let mut m = model(&urdf, Base::Fixed);
+    let mut colliders = vec![floor];
+    for (k, (_, radius)) in list.iter().enumerate() {
+        colliders.push(on_link(&m, &format!("b{k}"), ContactForm::Ball { radius: *radius }, own));
+    }
+    m.set_colliders(colliders);
+    m
+}
