@@ -4,7 +4,7 @@ use super::midpoint::Midpoint;
 use super::paid::Paid;
 use super::rk4::Stages;
 use super::sleep::Sleep;
-use crate::dynamics::{Kinematics, Workspace, exponential_step, move_coordinates, normalize};
+use crate::dynamics::{Kinematics, Scheme, Workspace, exponential_step, move_coordinates, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart, write_softs};
@@ -67,6 +67,13 @@ impl State {
         }
         s.couple_in_range(m);
         s
+    }
+
+    /// Appends the state of a model that joins ([`Model::join`]).
+    pub fn join(&mut self, other: &Self) {
+        self.q.extend_from_slice(&other.q);
+        self.v.extend_from_slice(&other.v);
+        self.angles.extend_from_slice(&other.angles);
     }
 
     /// Position (rad, m) and speed of an axis.
@@ -333,9 +340,11 @@ impl Rbx {
         let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false, sweeps: s.passes };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects);
+        write_damping(m, &mut self.ws, (s.h, Scheme::Start), s.effects.body_damping);
         report.unsettled = !self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
+        self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
         let lifted = self.axes.lift(m, &self.ws, (at.q, at.v, &self.qdd), s.h, &mut self.lift);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         if lifted {
@@ -358,6 +367,7 @@ impl Rbx {
             return false;
         }
         let Some(mut st) = self.stages.take() else { return false };
+        write_damping(m, &mut self.ws, (s.h, Scheme::Continuous), s.effects.body_damping);
         let smooth = self.rk4_stages(m, s, &mut st) && !self.axes.collides(m, Some(self.state.as_ref()));
         self.stages = Some(st);
         if !smooth {

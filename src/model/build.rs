@@ -80,6 +80,8 @@ impl<'a> Builder<'a> {
             breakables: vec![],
             chains: chains(d),
             rigs: vec![],
+            dampings: vec![],
+            joined: vec![],
             colliders: vec![],
             excluded_pairs: vec![],
             effects: Effects::NONE,
@@ -326,6 +328,7 @@ impl<'a> Builder<'a> {
         }
         self.model.rigs = rigs(self.d, &self.model);
         self.model.couplings = super::coupling::couplings(self.d, &self.model);
+        self.model.dampings = super::damping::dampings(self.d, &self.model);
         self.model.effects = Effects::called_for(&self.model);
     }
 }

@@ -90,6 +90,8 @@ pub struct AxisSet {
     pub work: Work,
     /// Per axis, then per soft direction: work of the last step with the speeds at its start, and at its end, J.
     pub(super) paid: Vec<(f64, f64)>,
+    /// The same of the damping of bodies.
+    pub(super) damped: (f64, f64),
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
     /// Per axis: its tree is out of the computation.
@@ -137,6 +139,7 @@ impl AxisSet {
             answers: Some(Box::new(Answers::new(model))),
             work: Work::default(),
             paid: vec![(0.0, 0.0); n + model.softs.len()],
+            damped: (0.0, 0.0),
             worst_stop: 0.0,
             resting: vec![false; n],
             mean: false,
@@ -324,6 +327,7 @@ impl AxisSet {
     /// the state of the last pass.
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
         self.paid.fill((0.0, 0.0));
+        self.damped = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
             if self.resting[i] {
                 continue;
@@ -354,7 +358,7 @@ impl AxisSet {
 
     /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.
     pub fn paid(&self) -> (f64, f64) {
-        self.paid.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1))
+        self.paid.iter().fold(self.damped, |sum, p| (sum.0 + p.0, sum.1 + p.1))
     }
 
     /// The same per axis, then per direction in which a joint yields.

@@ -8,6 +8,7 @@ mod command;
 mod cone;
 mod contacts;
 mod couplings;
+mod damping;
 mod dense;
 mod drive;
 mod finish;

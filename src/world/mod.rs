@@ -18,7 +18,7 @@ pub use breaking::Broken;
 pub use contact::ContactPoint;
 pub use pose::Side;
 pub use settings::{Integrator, Settings};
-pub use snapshot::Snapshot;
+pub use snapshot::{SHOWN_CONTACTS, Snapshot, Wrench};
 
 /// Counters since the start; none of them is ever reset by a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -263,6 +263,8 @@ impl World {
             link_pose: vec![Pose::identity(); links],
             link_twist: vec![Twist::default(); links],
             cut_off: vec![false; links],
+            contacts: Vec::with_capacity(SHOWN_CONTACTS),
+            link_wrench: vec![Wrench::default(); links],
             broken: Vec::with_capacity(self.breaking.intact.breakables.len()),
             ..Snapshot::default()
         };
@@ -280,11 +282,12 @@ impl World {
         s.effort.copy_from_slice(&self.engine.axes.effort);
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
-            s.cut_off[link] = link != m.root_link && m.links[link].parent.is_none();
+            s.cut_off[link] = m.links[link].parent.is_none() && !m.is_root(link);
             s.link_twist[link] = link_twist(m, &self.kinematics, (&state.q, &state.v), &state.angles, link);
         }
         let e = self.energy();
         (s.kinetic_energy, s.potential_energy) = (e.kinetic, e.potential);
+        s.take_contacts(m, &self.contacts);
         s.stats = self.stats;
         s.broken.clear();
         s.broken.extend_from_slice(self.broken());

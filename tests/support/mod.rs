@@ -57,6 +57,8 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         breakables: vec![],
         chains: vec![],
         rigs: vec![],
+        dampings: vec![],
+        joined: vec![],
         colliders: vec![],
         effects: Effects { gravity: true, drives: true, ..Effects::NONE },
     };
