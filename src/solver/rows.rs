@@ -126,7 +126,7 @@ impl Rows {
         self.values.resize(values + rows * ids.len() * CHUNK, 0.0);
         self.rows.resize(first + rows, Row::default());
         self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off });
-        self.finish.make_room(self.blocks.len(), self.rows.len());
+        self.finish.make_room(self.rows.len());
         self.lifts.add();
         self.blocks.len() - 1
     }
@@ -235,9 +235,7 @@ impl Rows {
             }
         }
         solved.residual = self.residual();
-        let bounded = |b: &Block| matches!(b.kind, Kind::Bounds { .. });
-        let direct = self.rows.len() <= FINISH_ROWS && self.blocks.iter().any(bounded);
-        if solved.residual > wanted && direct {
+        if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
             (solved.residual, solved.tries) = self.finish(solved.residual, wanted);
         }
         solved
