@@ -5,7 +5,7 @@
 //! unit vector e, so its equations are `u_n = 0` and `e⊥·u_t = 0`, whose derivative with respect to the turn is that of
 //! the velocities plus `−u_t·e / |x_t|`. Discs at their rim follow the normal impulse likewise.
 
-use super::dense::Lu;
+use super::dense::{Lu, dot};
 use super::rows::{Block, CHUNK, FINISH_ROWS, Inner, Kind, Rows};
 
 /// Linearisations in one finish of the largest problem. Smaller ones may take as long.
@@ -32,6 +32,8 @@ pub(super) struct Scratch {
     links: Vec<Link>,
     /// `A` times the impulse of each unknown.
     moved: Vec<f64>,
+    /// What the unknowns do to the equations.
+    matrix: Vec<f64>,
     velocity: Vec<f64>,
     lu: Lu,
     /// Impulses before a try, and the best.
@@ -72,7 +74,7 @@ impl Scratch {
         for v in [&mut self.velocity, &mut self.kept, &mut self.best] {
             v.resize(rows, 0.0);
         }
-        for v in [&mut self.a, &mut self.moved] {
+        for v in [&mut self.a, &mut self.moved, &mut self.matrix] {
             v.resize(rows * rows, 0.0);
         }
     }
@@ -122,17 +124,15 @@ impl Scratch {
             let second = if u.along[1] == 0.0 { 0.0 } else { u.along[1] * v[u.row + 1] };
             u.along[0] * v[u.row] + second
         };
-        let element = |i: usize, k: usize| {
-            let own = if i == k { unknowns[i].stiffness } else { 0.0 };
-            along(&unknowns[i], &moved[k * n..k * n + n]) + own
-        };
-        let soft = |i: usize| SOFT * self.a[unknowns[i].row * (n + 1)];
-        self.lu.factorise(count, |i, k| element(i, k) + if i == k { soft(i) } else { 0.0 });
+        for (i, u) in unknowns.iter().enumerate() {
+            let row = &mut self.matrix[i * count..i * count + count];
+            row.iter_mut().zip(moved.chunks_exact(n)).for_each(|(to, v)| *to = along(u, v));
+            row[i] += u.stiffness;
+        }
+        let (matrix, a) = (&self.matrix[..count * count], &self.a);
+        self.lu.factorise(count, matrix, |i| SOFT * a[unknowns[i].row * (n + 1)]);
         self.lu.solve(|i| -along(&unknowns[i], velocity));
-        self.lu.refine(|i, x| {
-            let given: f64 = x.iter().enumerate().map(|(k, x)| element(i, k) * x).sum();
-            -along(&unknowns[i], velocity) - given
-        });
+        self.lu.refine(|i, x| -along(&unknowns[i], velocity) - dot(&matrix[i * count..i * count + count], x));
     }
 }
 
@@ -348,7 +348,7 @@ enum Way {
 impl Way {
     fn of(x: [f64; 2], u: [f64; 2], step: f64, radius: f64) -> Self {
         let to = [x[0] - step * u[0], x[1] - step * u[1]];
-        let size = libm::hypot(to[0], to[1]);
+        let size = (to[0] * to[0] + to[1] * to[1]).sqrt();
         if size <= radius {
             return Self::Inside;
         }
