@@ -16,6 +16,8 @@ const MANY: usize = 10;
 /// Softness of the linearised problem, relative to a row's own mobility: internal forces that nothing determines (a box on
 /// four corners) stay near those of the iteration. It is not in the residual: what Newton solves is exact.
 const SOFT: f64 = 1e-10;
+/// A residual this small against the velocities at the start is not worth another try that may not help.
+const ROUNDING: f64 = 1e-12;
 /// Sweeps from where it started after a try that did not help.
 const SWEEPS: u32 = 10;
 
@@ -137,8 +139,9 @@ impl Scratch {
 }
 
 impl Rows {
-    /// Improves the impulses; returns the residual, which never grows, and the number of tries.
-    pub(super) fn finish(&mut self, mut residual: f64, wanted: f64) -> (f64, u32) {
+    /// Improves the impulses to a residual of `wanted`, where velocities have the size `scale`; returns the residual, which
+    /// never grows, and the number of tries.
+    pub(super) fn finish(&mut self, mut residual: f64, wanted: f64, scale: f64) -> (f64, u32) {
         let mut s = std::mem::take(&mut self.finish);
         self.fill(&mut s.a);
         let size = self.rows.len().max(1);
@@ -162,6 +165,8 @@ impl Rows {
             }
             if better {
                 self.keep(&mut s.best);
+            } else if residual <= ROUNDING * scale {
+                break;
             }
         }
         self.restore(&s.best);

@@ -238,7 +238,7 @@ impl Rows {
         }
         solved.residual = self.residual();
         if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
-            (solved.residual, solved.tries) = self.finish(solved.residual, wanted);
+            (solved.residual, solved.tries) = self.finish(solved.residual, wanted, solved.scale);
         }
         solved
     }
