@@ -7,7 +7,7 @@
 
 use super::guard::Guard;
 use super::rbx::{Rbx, State, StepReport, StepSettings};
-use crate::dynamics::move_coordinates;
+use crate::dynamics::{Scheme, move_coordinates, write_damping};
 use crate::model::Model;
 use crate::solver::{AxisCommand, StepStart, write_softs};
 
@@ -83,15 +83,16 @@ impl Rbx {
                     report.halvings += 1;
                     continue;
                 }
-                End::Converged => self.take(m, mid, part.h),
-                End::Unsettled => {
-                    report.unsettled = true;
+                end @ (End::Converged | End::Unsettled) => {
+                    report.unsettled |= matches!(end, End::Unsettled);
                     self.take(m, mid, part.h);
+                    self.pay(m, &mid.start, part.gravity, report);
                 }
                 End::NoContraction => {
                     report.unsettled = true;
                     self.explicit_piece(m, mid, commands, &part);
                     self.guard(m, mid, part.gravity, report);
+                    self.pay(m, &mid.start, part.gravity, report);
                 }
             }
             done += piece;
@@ -120,6 +121,7 @@ impl Rbx {
         };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects);
+        write_damping(m, &mut self.ws, (s.h, Scheme::Middle), s.effects.body_damping);
         self.qdd.copy_from_slice(&mid.guess);
         self.mean_velocities(mid, s.h);
         self.half_way(m, mid, s.h);
@@ -203,6 +205,7 @@ impl Rbx {
     fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
         self.axes.finish(m, &self.ws, &mid.middle.q, (h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
+        self.axes.add_damping_work(m, &mut self.ws, (&mid.middle.q, &mid.start.v), (h, &self.qdd));
         for (v, (v0, a)) in self.state.v.iter_mut().zip(mid.start.v.iter().zip(&self.qdd)) {
             *v = v0 + h * a;
         }

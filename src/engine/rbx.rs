@@ -1,9 +1,10 @@
 //! rbx: reduced coordinates, one step at a time.
 
 use super::midpoint::Midpoint;
+use super::paid::Paid;
 use super::rk4::Stages;
 use super::sleep::Sleep;
-use crate::dynamics::{Kinematics, Workspace, exponential_step, move_coordinates, normalize};
+use crate::dynamics::{Kinematics, Scheme, Workspace, exponential_step, move_coordinates, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart, write_softs};
@@ -66,6 +67,13 @@ impl State {
         }
         s.couple_in_range(m);
         s
+    }
+
+    /// Appends the state of a model that joins ([`Model::join`]).
+    pub fn join(&mut self, other: &Self) {
+        self.q.extend_from_slice(&other.q);
+        self.v.extend_from_slice(&other.v);
+        self.angles.extend_from_slice(&other.angles);
     }
 
     /// Position (rad, m) and speed of an axis.
@@ -215,6 +223,8 @@ pub struct StepReport {
     pub guarded: u32,
     /// What they lost, J.
     pub guarded_energy: f64,
+    /// Energy that contacts would have made out of the error of the step, and that was taken out, J.
+    pub trimmed_energy: f64,
     /// A 3DOF group was at its pole.
     pub at_pole: bool,
     /// The new state would not have been finite: it was not taken.
@@ -234,6 +244,8 @@ pub struct Rbx {
     /// Speeds that keep bodies out of each other.
     pub(super) lift: Vec<f64>,
     unlifted: Vec<f64>,
+    /// `None` if nothing can touch.
+    pub(super) paid: Option<Paid>,
     /// `None` if nothing ever rests.
     pub(super) sleep: Option<Sleep>,
     /// The step, s, of which a halved one is a part.
@@ -245,14 +257,15 @@ pub struct Rbx {
 impl Rbx {
     /// At the initial state.
     pub fn new(m: &Model) -> Self {
-        let state = State::initial(m);
+        let (state, axes) = (State::initial(m), AxisSet::new(m));
         Self {
-            axes: AxisSet::new(m),
             ws: Workspace::new(m),
             qdd: vec![0.0; m.nv],
             before: state.clone(),
             lift: vec![0.0; m.nv],
             unlifted: vec![0.0; m.nq],
+            paid: axes.contacts().is_some().then(|| Paid::new(m)),
+            axes,
             sleep: Sleep::new(m),
             whole_step: 0.0,
             midpoint: None,
@@ -327,9 +340,11 @@ impl Rbx {
         let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false, sweeps: s.passes };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects);
+        write_damping(m, &mut self.ws, (s.h, Scheme::Start), s.effects.body_damping);
         report.unsettled = !self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
+        self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
         let lifted = self.axes.lift(m, &self.ws, (at.q, at.v, &self.qdd), s.h, &mut self.lift);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         if lifted {
@@ -338,6 +353,9 @@ impl Rbx {
         }
         self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);
+        let before = std::mem::take(&mut self.before);
+        self.pay(m, &before, s.gravity, report);
+        self.before = before;
     }
 
     /// False, with the state as before, if the step is not smooth.
@@ -349,6 +367,7 @@ impl Rbx {
             return false;
         }
         let Some(mut st) = self.stages.take() else { return false };
+        write_damping(m, &mut self.ws, (s.h, Scheme::Continuous), s.effects.body_damping);
         let smooth = self.rk4_stages(m, s, &mut st) && !self.axes.collides(m, Some(self.state.as_ref()));
         self.stages = Some(st);
         if !smooth {

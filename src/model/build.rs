@@ -80,7 +80,10 @@ impl<'a> Builder<'a> {
             breakables: vec![],
             chains: chains(d),
             rigs: vec![],
+            dampings: vec![],
+            joined: vec![],
             colliders: vec![],
+            excluded_pairs: vec![],
             effects: Effects::NONE,
         };
         let seats = vec![(0, Pose::identity()); d.links.len()];
@@ -325,6 +328,7 @@ impl<'a> Builder<'a> {
         }
         self.model.rigs = rigs(self.d, &self.model);
         self.model.couplings = super::coupling::couplings(self.d, &self.model);
+        self.model.dampings = super::damping::dampings(self.d, &self.model);
         self.model.effects = Effects::called_for(&self.model);
     }
 }

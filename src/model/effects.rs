@@ -3,7 +3,7 @@
 use super::Model;
 
 /// Names for `--on` and `--off`, in the order of the fields of [`Effects`].
-pub const EFFECT_NAMES: [&str; 11] = [
+pub const EFFECT_NAMES: [&str; 12] = [
     "gravity",
     "damping",
     "friction",
@@ -13,6 +13,7 @@ pub const EFFECT_NAMES: [&str; 11] = [
     "compliance",
     "mimic",
     "breaking",
+    "body_damping",
     "contact",
     "deactivation",
 ];
@@ -38,6 +39,8 @@ pub struct Effects {
     pub mimic: bool,
     /// Joints that come apart (`<constraint break_threshold>`).
     pub breaking: bool,
+    /// Damping of bodies (`<damping>`).
+    pub body_damping: bool,
     /// Contacts of bodies with each other and with the ground.
     pub contact: bool,
     /// Bodies at rest leave the computation (`<deactivate>`).
@@ -58,6 +61,7 @@ impl Effects {
             compliance: m.softs.iter().any(|s| s.softness.cfm > 0.0),
             mimic: !m.couplings.is_empty(),
             breaking: !m.breakables.is_empty(),
+            body_damping: !m.dampings.is_empty(),
             contact: m.colliders.len() > 1,
             deactivation: m.links.iter().any(|l| l.deactivation.is_some()),
         }
@@ -73,6 +77,7 @@ impl Effects {
         compliance: false,
         mimic: false,
         breaking: false,
+        body_damping: false,
         contact: false,
         deactivation: false,
     };
@@ -88,6 +93,7 @@ impl Effects {
             self.compliance,
             self.mimic,
             self.breaking,
+            self.body_damping,
             self.contact,
             self.deactivation,
         ]
@@ -105,6 +111,7 @@ impl Effects {
             "compliance" => &mut self.compliance,
             "mimic" => &mut self.mimic,
             "breaking" => &mut self.breaking,
+            "body_damping" => &mut self.body_damping,
             "contact" => &mut self.contact,
             "deactivation" => &mut self.deactivation,
             _ => return false,

@@ -9,6 +9,7 @@
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
 use super::contacts::Contacts;
+use super::contested::Contest;
 use super::couplings::Couplings;
 use super::law::{FRICTION, Law};
 use super::mobility::Answers;
@@ -88,9 +89,18 @@ pub struct AxisSet {
     pub effort: Vec<f64>,
     /// Work since the start.
     pub work: Work,
-    pub(super) paid: (f64, f64),
+    /// Per axis, then per soft direction: work of the last step with the speeds at its start, and at its end, J.
+    pub(super) paid: Vec<(f64, f64)>,
+    /// The same of the damping of bodies.
+    pub(super) damped: (f64, f64),
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
+    /// Per axis: is it a row beside contacts?
+    pub(super) contests: Vec<Contest>,
+    /// Pass of the step.
+    passes: u32,
+    /// Step of the last pass, s.
+    pub(super) h: f64,
     /// Per axis: its tree is out of the computation.
     pub resting: Vec<bool>,
     pub(super) mean: bool,
@@ -135,8 +145,12 @@ impl AxisSet {
             couplings: Couplings::new(model),
             answers: Some(Box::new(Answers::new(model))),
             work: Work::default(),
-            paid: (0.0, 0.0),
+            paid: vec![(0.0, 0.0); n + model.softs.len()],
+            damped: (0.0, 0.0),
             worst_stop: 0.0,
+            contests: vec![Contest::default(); n],
+            passes: 0,
+            h: 0.0,
             resting: vec![false; n],
             mean: false,
             sweeps: 1,
@@ -162,6 +176,8 @@ impl AxisSet {
     pub fn prepare(&mut self, m: &Model, start: &StepStart, effects: Effects) -> bool {
         let at_pole = self.update_rates(m, start.state.angles);
         (self.best, self.patience) = (usize::MAX, PATIENCE);
+        (self.passes, self.h) = (0, start.h);
+        self.contests.fill(Contest::default());
         for (i, axis) in m.axes.iter().enumerate() {
             if self.resting[i] {
                 continue;
@@ -232,6 +248,7 @@ impl AxisSet {
         }
         let loose = self.couple(m, ws, (at, v0), h, qdd);
         let misfits = self.misfits(m, ws, (h, qdd)) + loose;
+        self.passes += 1;
         if misfits > 0 && wanted {
             if misfits < self.best {
                 (self.best, self.patience) = (misfits, PATIENCE);
@@ -263,6 +280,12 @@ impl AxisSet {
         for (i, axis) in m.axes.iter().enumerate() {
             self.moves[i] = 0;
             if self.resting[i] {
+                continue;
+            }
+            if self.contests[i].on {
+                let end = self.speed[i] + h * self.axis_rate(m, axis, qdd);
+                self.moves[i] = self.leaves_contest(i, end);
+                count += usize::from(self.moves[i] != 0);
                 continue;
             }
             let (law, place) = (&self.laws[i], self.place[i]);
@@ -306,8 +329,9 @@ impl AxisSet {
 
     /// Moves all that do not fit, or only the last of them.
     fn apply(&mut self, all: bool) {
+        let contest = self.passes > 1 && self.contacts().is_some_and(|c| !c.is_empty());
         for i in (0..self.moves.len()).rev() {
-            if self.moves[i] == 0 {
+            if self.moves[i] == 0 || (contest && self.contest(i, self.moves[i])) {
                 continue;
             }
             self.place[i] = self.laws[i].neighbour(self.place[i], self.moves[i]);
@@ -322,7 +346,9 @@ impl AxisSet {
     /// Ends an implicit step of `h` seconds with these accelerations: remembers the places, writes efforts and work. `q` (nq) is
     /// the state of the last pass.
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
-        self.paid = (0.0, 0.0);
+        self.paid.fill((0.0, 0.0));
+        self.settle_contests();
+        self.damped = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
             if self.resting[i] {
                 continue;
@@ -346,15 +372,19 @@ impl AxisSet {
             };
             self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
             self.effort[i] = effort;
-            self.paid.0 += 0.5 * h * total * self.speed[i];
-            self.paid.1 += 0.5 * h * total * end;
+            self.paid[i] = (0.5 * h * total * self.speed[i], 0.5 * h * total * end);
             self.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
         }
     }
 
     /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.
     pub fn paid(&self) -> (f64, f64) {
-        self.paid
+        self.paid.iter().fold(self.damped, |sum, p| (sum.0 + p.0, sum.1 + p.1))
+    }
+
+    /// The same per axis, then per direction in which a joint yields.
+    pub fn paid_by(&self) -> &[(f64, f64)] {
+        &self.paid
     }
 
     /// Per axis: inertia of the rotor that counts, kg·m² or kg.

@@ -5,6 +5,11 @@ use super::cone::{ConeBlock, Plane, disc};
 
 /// Numbers in a chunk of w.
 pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
+/// A visit of a block stays near what it had before, by this share of its trace: that moves no solution, and a block that is
+/// held in some direction has one.
+const NEAR: f64 = 1e-9;
+/// A contact whose normal moves by less than this share of its tangents is held.
+const DEAD: f64 = 1e-12;
 /// More rows than this are left to the iteration: the direct finish costs their cube.
 pub const FINISH_ROWS: usize = 60;
 
@@ -209,6 +214,11 @@ impl Rows {
         dot(y(i), y(k)) + softness
     }
 
+    /// Trace of a block's own part of `Y Yᵀ + R`.
+    pub fn trace(&self, block: usize) -> f64 {
+        self.blocks[block].inner.trace()
+    }
+
     /// Forgets all impulses.
     pub fn reset(&mut self) {
         for row in &mut self.rows {
@@ -357,11 +367,16 @@ fn single(h: f64) -> Inner {
 }
 
 fn pair([a, b, d]: [f64; 3]) -> Inner {
-    if a * d - b * b > 0.0 && a > 0.0 { Inner::Pair(Plane::new(a, b, d), a + d) } else { Inner::Off }
+    let (trace, more) = (a + d, NEAR * (a + d));
+    if trace > 0.0 { Inner::Pair(Plane::new(a + more, b, d + more), trace) } else { Inner::Off }
 }
 
+/// A contact that gives way along its normal takes part, also where it is held along a tangent.
 fn cone(h: [f64; 6]) -> Inner {
-    if h[0] > 0.0 && h[3] > 0.0 && h[5] > 0.0 { Inner::Cone(ConeBlock::new(h)) } else { Inner::Off }
+    let trace = h[0] + h[3] + h[5];
+    let more = NEAR * trace;
+    let near = [h[0] + more, h[1], h[2], h[3] + more, h[4], h[5] + more];
+    if h[0] > DEAD * trace { Inner::Cone(ConeBlock::new(near)) } else { Inner::Off }
 }
 
 /// Of two rows over the same chunks.

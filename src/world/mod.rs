@@ -18,7 +18,7 @@ pub use breaking::Broken;
 pub use contact::ContactPoint;
 pub use pose::Side;
 pub use settings::{Integrator, Settings};
-pub use snapshot::Snapshot;
+pub use snapshot::{SHOWN_CONTACTS, Snapshot, Wrench};
 
 /// Counters since the start; none of them is ever reset by a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,6 +38,8 @@ pub struct Stats {
     pub guarded_energy: f64,
     /// By how much an axis was outside its range at most (a soft stop, a start there, an angle of a 3DOF group); rad or m.
     pub worst_stop_violation: f64,
+    /// Energy that steps in contact would have made out of nothing, and that was taken out of the velocities, J.
+    pub trimmed_energy: f64,
     /// The deepest penetration of two bodies at the start or the end of a step, m.
     pub worst_penetration: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
@@ -214,6 +216,7 @@ impl World {
         s.halvings += u64::from(report.halvings);
         s.guarded_pieces += u64::from(report.guarded);
         s.guarded_energy += report.guarded_energy;
+        s.trimmed_energy += report.trimmed_energy;
         s.worst_stop_violation = self.engine.axes.worst_stop;
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
@@ -260,6 +263,8 @@ impl World {
             link_pose: vec![Pose::identity(); links],
             link_twist: vec![Twist::default(); links],
             cut_off: vec![false; links],
+            contacts: Vec::with_capacity(SHOWN_CONTACTS),
+            link_wrench: vec![Wrench::default(); links],
             broken: Vec::with_capacity(self.breaking.intact.breakables.len()),
             ..Snapshot::default()
         };
@@ -277,11 +282,12 @@ impl World {
         s.effort.copy_from_slice(&self.engine.axes.effort);
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
-            s.cut_off[link] = link != m.root_link && m.links[link].parent.is_none();
+            s.cut_off[link] = m.links[link].parent.is_none() && !m.is_root(link);
             s.link_twist[link] = link_twist(m, &self.kinematics, (&state.q, &state.v), &state.angles, link);
         }
         let e = self.energy();
         (s.kinetic_energy, s.potential_energy) = (e.kinetic, e.potential);
+        s.take_contacts(m, &self.contacts);
         s.stats = self.stats;
         s.broken.clear();
         s.broken.extend_from_slice(self.broken());
