@@ -3,6 +3,7 @@
 use super::feature::{Feature, Spot};
 use super::nearest::{Nearest, Placed, Search, separation};
 use super::raw::{Raw, SAME, reduce};
+use super::vector::norm;
 use crate::math::V3;
 
 /// Memory of the narrow phase; made once.
@@ -46,7 +47,9 @@ pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, (reach, size): (
 /// The nearest points alone.
 fn single(s: &Scratch, near: &Nearest, round: [f64; 2]) -> Raw {
     let core = near.points;
-    if near.distance > SAME && round[0] + round[1] > 0.0 {
+    let way = core[1] - core[0];
+    let straight = norm(way - near.normal * near.distance) <= 1e-6 * near.distance;
+    if near.distance > SAME && straight && round[0] + round[1] > 0.0 {
         return Raw::between(NEAREST, core, round, near.normal);
     }
     // One spot: a smooth surface, or a corner.

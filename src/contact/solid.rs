@@ -69,6 +69,11 @@ impl Solid {
         Some(Self { kind, round: radius + margin })
     }
 
+    /// Has the core a curved surface?
+    pub(super) fn is_smooth(&self) -> bool {
+        matches!(self.kind, Kind::Balls { .. } | Kind::Ellipsoid { .. } | Kind::Frustum { .. })
+    }
+
     /// The point of the core furthest in a direction of any length.
     pub(super) fn support(&self, d: V3<f64>) -> V3<f64> {
         let up = |z: f64, half: f64| V3::new(0.0, 0.0, half.copysign(z));
