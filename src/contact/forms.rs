@@ -80,7 +80,8 @@ fn exact(shape: &Shape) -> Option<ContactForm> {
     if !(whole && sharp) {
         return None;
     }
-    let frustum = |x: f64, y: f64, top: f64, length: f64| ContactForm::Frustum { radii: [x, y], top, half: 0.5 * length };
+    let frustum =
+        |x: f64, y: f64, top: f64, length: f64| ContactForm::Frustum { radii: [x, y], top, half: 0.5 * length };
     Some(match shape.geometry {
         Geometry::Sphere { radius } => ContactForm::Ball { radius },
         Geometry::Ellipsoid { radii } => ContactForm::Ellipsoid { radii },
@@ -138,7 +139,8 @@ fn convex(shape: &Shape) -> bool {
 fn flat(corners: &[[f64; 3]; 4]) -> bool {
     let [a, b, c, d] = corners.map(Vec3::from);
     let normal = (b - a).cross(&(c - a));
-    let reflex = [(a, b, c), (b, c, d), (c, d, a), (d, a, b)].iter().any(|(p, q, r)| (q - p).cross(&(r - q)).dot(&normal) < 0.0);
+    let reflex =
+        [(a, b, c), (b, c, d), (c, d, a), (d, a, b)].iter().any(|(p, q, r)| (q - p).cross(&(r - q)).dot(&normal) < 0.0);
     let size = (c - a).norm().max((d - b).norm());
     normal.dot(&(d - a)).abs() <= 1e-9 * normal.norm() * size && !reflex
 }

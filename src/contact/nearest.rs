@@ -84,11 +84,30 @@ impl Search {
         let n = if !deep && length > 1e-7 { (q - p) * (1.0 / length) } else { unit(n)? };
         let n = if deep && separation(a, b, -n) > separation(a, b, n) { -n } else { n };
         let n = if a.solid.is_smooth() || b.solid.is_smooth() { polished(a, b, n) } else { n };
+        // Where they just touch, the search has no direction: then that of a face may be the right one.
+        let said = if deep { n.dot(q - p) } else { length };
+        let doubtful = separation(a, b, n) < said - 1e-6 * (said.abs() + 1e-3);
+        let n = if doubtful { of_faces(a, b, n) } else { n };
         // Onto the planes that bound the cores in this direction, so that the distance is what the direction proves.
         let (h, g) = (n.dot(a.support(n)), n.dot(b.support(-n)));
         let points = [p + n * (h - n.dot(p)), q + n * (g - n.dot(q))];
         Some(Nearest { points, normal: n, distance: g - h })
     }
+}
+
+/// The direction among `n` and the normals of all faces that separates best.
+fn of_faces(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
+    let mut best = (separation(a, b, n), n);
+    for (side, placed) in [a, b].into_iter().enumerate() {
+        placed.solid.face_normals(|outward| {
+            let n = placed.frame.r.mv(outward) * if side == 0 { 1.0 } else { -1.0 };
+            let s = separation(a, b, n);
+            if s > best.0 {
+                best = (s, n);
+            }
+        });
+    }
+    best.1
 }
 
 /// Rounds of Newton's method: it starts at about 1e-4 and doubles its digits.

@@ -41,7 +41,9 @@ pub(super) struct Part {
 impl Part {
     pub(super) fn of(m: &Model, c: &Collider) -> Self {
         let (body, pose) = match c.link.map(|l| &m.links[l].frame) {
-            Some(LinkFrame::OnBody { body, offset } | LinkFrame::InGroup { body, offset, .. }) => (*body, offset * c.pose),
+            Some(LinkFrame::OnBody { body, offset } | LinkFrame::InGroup { body, offset, .. }) => {
+                (*body, offset * c.pose)
+            }
             None => (0, c.pose),
         };
         let r = M3::from(*pose.rotation.to_rotation_matrix().matrix());
@@ -61,7 +63,18 @@ impl Part {
             Shape::Surface(s) => ((s.middle, s.half + margin), norm(s.half) + c.margin, f64::INFINITY),
         };
         let middle = frame.at(extent.0);
-        Self { body, link: c.link, frame, shape, margin: c.margin, friction: c.surface, extent, middle, radius, thickness }
+        Self {
+            body,
+            link: c.link,
+            frame,
+            shape,
+            margin: c.margin,
+            friction: c.surface,
+            extent,
+            middle,
+            radius,
+            thickness,
+        }
     }
 
     /// Its frame in the world.

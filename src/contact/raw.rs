@@ -89,9 +89,8 @@ pub(super) fn reduce(list: &mut Vec<Raw>, from: usize, same: f64) {
     let mut kept = from;
     for i in from..list.len() {
         let new = list[i];
-        let twin = (from..kept).find(|k| {
-            norm(list[*k].point() - new.point()) < same && list[*k].direction().dot(new.direction()) > 0.999
-        });
+        let twin = (from..kept)
+            .find(|k| norm(list[*k].point() - new.point()) < same && list[*k].direction().dot(new.direction()) > 0.999);
         match twin {
             Some(k) if new.gap < list[k].gap - 1e-12 => list[k] = new,
             Some(_) => {}

@@ -51,15 +51,13 @@ impl Solid {
             ContactForm::Cuboid { half } => (Kind::Cuboid { half: *half }, 0.0),
             ContactForm::RoundCuboid { half, radius } => (Kind::Cuboid { half: *half }, *radius),
             ContactForm::Capsule { bottom, top, half } if bottom == top => (Kind::Segment { half: *half }, *bottom),
-            ContactForm::Capsule { bottom, top, half } => {
-                (Kind::Balls { radii: [*bottom, *top], half: *half }, 0.0)
-            }
+            ContactForm::Capsule { bottom, top, half } => (Kind::Balls { radii: [*bottom, *top], half: *half }, 0.0),
             ContactForm::Ellipsoid { radii } => (Kind::Ellipsoid { radii: *radii }, 0.0),
-            ContactForm::Cylinder { radius, half } => (Kind::Frustum { radii: [*radius; 2], top: 1.0, half: *half }, 0.0),
-            ContactForm::Cone { radius, half } => (Kind::Frustum { radii: [*radius; 2], top: 0.0, half: *half }, 0.0),
-            ContactForm::Frustum { radii, top, half } => {
-                (Kind::Frustum { radii: *radii, top: *top, half: *half }, 0.0)
+            ContactForm::Cylinder { radius, half } => {
+                (Kind::Frustum { radii: [*radius; 2], top: 1.0, half: *half }, 0.0)
             }
+            ContactForm::Cone { radius, half } => (Kind::Frustum { radii: [*radius; 2], top: 0.0, half: *half }, 0.0),
+            ContactForm::Frustum { radii, top, half } => (Kind::Frustum { radii: *radii, top: *top, half: *half }, 0.0),
             ContactForm::Hull(corners) => {
                 let points: Vec<V3<f64>> = corners.iter().map(|c| V3::from(*c)).collect();
                 let hull = Polytope::of(&points).unwrap_or_else(|| Polytope::bare(&points));
@@ -72,6 +70,21 @@ impl Solid {
     /// Has the core a curved surface?
     pub(super) fn is_smooth(&self) -> bool {
         matches!(self.kind, Kind::Balls { .. } | Kind::Ellipsoid { .. } | Kind::Frustum { .. })
+    }
+
+    /// Tells the outward normals of all faces, in the shape's frame.
+    pub(super) fn face_normals(&self, mut tell: impl FnMut(V3<f64>)) {
+        let (x, y, z) = (V3::new(1.0, 0.0, 0.0), V3::new(0.0, 1.0, 0.0), V3::new(0.0, 0.0, 1.0));
+        match &self.kind {
+            Kind::Cuboid { .. } => [x, -x, y, -y, z, -z].into_iter().for_each(tell),
+            Kind::Frustum { .. } => [z, -z].into_iter().for_each(tell),
+            Kind::Hull(hull) => hull.normals.iter().copied().for_each(tell),
+            Kind::Triangle([a, b, c]) => {
+                let n = unit((*b - *a).cross(*c - *a));
+                n.into_iter().flat_map(|n| [n, -n]).for_each(&mut tell);
+            }
+            _ => {}
+        }
     }
 
     /// The point of the core furthest in a direction of any length.
@@ -99,7 +112,13 @@ impl Solid {
             Kind::Hull(hull) => hull.support(d),
             Kind::Triangle([a, b, c]) => {
                 let (x, y, z) = (a.dot(d), b.dot(d), c.dot(d));
-                if x >= y && x >= z { *a } else if y >= z { *b } else { *c }
+                if x >= y && x >= z {
+                    *a
+                } else if y >= z {
+                    *b
+                } else {
+                    *c
+                }
             }
         }
     }

@@ -62,9 +62,10 @@ impl Surface {
         let boxes: Vec<Aabb> = s.corners.iter().map(|c| Aabb::from_points(c.map(vector))).collect();
         s.tree = Bvh::from_leaves(BvhBuildStrategy::default(), &boxes);
         let all = s.corners.iter().flatten();
-        let (low, high) = all.fold((V3::new(1.0, 1.0, 1.0) * f64::MAX, V3::new(1.0, 1.0, 1.0) * f64::MIN), |(l, h), p| {
-            (V3::new(l.x.min(p.x), l.y.min(p.y), l.z.min(p.z)), V3::new(h.x.max(p.x), h.y.max(p.y), h.z.max(p.z)))
-        });
+        let (low, high) =
+            all.fold((V3::new(1.0, 1.0, 1.0) * f64::MAX, V3::new(1.0, 1.0, 1.0) * f64::MIN), |(l, h), p| {
+                (V3::new(l.x.min(p.x), l.y.min(p.y), l.z.min(p.z)), V3::new(h.x.max(p.x), h.y.max(p.y), h.z.max(p.z)))
+            });
         if !s.corners.is_empty() {
             (s.middle, s.half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);
         }
