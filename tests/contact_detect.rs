@@ -1,20 +1,16 @@
-//! The detector as a whole: lists of near pairs, names that last, manifolds, surfaces, memory, colliders of robots.
+//! The detector as a whole: lists of near pairs, names that last, manifolds, surfaces, memory.
 #![allow(clippy::unwrap_used)] // a test may panic
 
 #[path = "contact/scene.rs"]
 mod scene;
 mod support;
 
-use realnoid::contact::{Defaults, Detector, Touch, colliders};
-use realnoid::description::{self, Finding, Geometry};
-use realnoid::mass::link_bodies;
+use realnoid::contact::{Detector, Touch};
 use realnoid::math::{Pose, Quat, V3, Vec3};
-use realnoid::model::{Base, LinkFrame, Model};
-use realnoid::shape::{ContactForm, Meshes, TriMesh, collision_shapes};
+use realnoid::shape::{ContactForm, TriMesh};
 use scene::{Scene, collider, forms, pose};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use std::path::Path;
 use std::sync::Arc;
 use support::Random;
 
@@ -344,98 +340,4 @@ fn fast_parts_are_told() {
     scene.place(0, Pose::translation(0.0, 0.0, 5.0));
     detector.find(&scene.k, 0.01, &mut out);
     assert_eq!((detector.fastest(), out.len()), (0.0, 0));
-}
-
-fn robot(text: &str, file: &str, base: Base) -> (description::Description, Model, Vec<Finding>) {
-    let d = description::read(text, file).description.unwrap();
-    let meshes = Meshes::beside(Path::new(file), &[]);
-    let masses: Vec<_> = link_bodies(&d, &meshes).0.iter().map(|b| b.simulated).collect();
-    let mut m = Model::build(&d, &masses, base, Pose::identity());
-    let findings = colliders(&d, &mut m, &meshes, Defaults::default());
-    (d, m, findings)
-}
-
-#[test]
-fn every_shape_of_our_robots_collides() {
-    for (file, base) in
-        [("urdf/origin.urdf", Base::Free), ("urdf/shapes.urdf", Base::Fixed), ("urdf/shapes.urdf", Base::Free)]
-    {
-        let text = std::fs::read_to_string(file).unwrap();
-        let (d, m, findings) = robot(&text, file, base);
-        let mut shapes = 0;
-        for (i, link) in d.links.iter().enumerate() {
-            let n = collision_shapes(link).1.len();
-            shapes += n;
-            assert_eq!(m.colliders.iter().filter(|c| c.link == Some(i)).count(), n, "{}", link.name);
-            assert!(n == 0 || matches!(m.links[i].frame, LinkFrame::OnBody { .. }));
-        }
-        assert!(shapes > 10, "{file}");
-        assert!(findings.iter().all(|f| f.code == "collides-as" || f.code == "links-overlap"), "{findings:?}");
-        let hollow =
-            d.links.iter().flat_map(|l| collision_shapes(l).1).filter(|s| matches!(s.geometry, Geometry::Torus { .. }));
-        let surfaces = m.colliders.iter().filter(|c| matches!(c.form, ContactForm::Surface(_))).count();
-        if base == Base::Fixed {
-            assert!(surfaces >= hollow.count());
-        } else {
-            assert_eq!(surfaces, 0, "what moves is convex");
-        }
-        assert_eq!(Detector::new(&m).is_some(), base == Base::Free && file.contains("origin"));
-    }
-}
-
-const LIMB: &str =
-    "<inertial><mass value='1'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial>";
-
-fn ball_link(name: &str, tags: &str) -> String {
-    format!("<link name='{name}'>{LIMB}<collision><geometry><sphere radius='0.1'/></geometry></collision>{tags}</link>")
-}
-
-fn joint(name: &str, parent: &str, child: &str, x: f64, tags: &str) -> String {
-    format!(
-        "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/>\
-         <origin xyz='{x} 0 0'/><axis xyz='0 0 1'/>{tags}</joint>"
-    )
-}
-
-#[test]
-fn which_links_may_touch() {
-    let links: String = ["a", "b", "c", "d", "e"].iter().map(|n| ball_link(n, "")).collect();
-    // a–b–c–d in a row, the joint of c soft; e overlaps a, but hangs on c.
-    let soft = "<realnoid><constraint erp='0.3' cfm='1e-4'/></realnoid>";
-    let joints = joint("ab", "a", "b", 0.3, "")
-        + &joint("bc", "b", "c", 0.3, soft)
-        + &joint("cd", "c", "d", 0.3, "")
-        + &joint("ce", "c", "e", -0.5, "");
-    let text = |chain: &str| format!("<robot name='r'>{links}{joints}{chain}</robot>");
-    let (_, m, findings) = robot(&text(""), "x", Base::Free);
-    assert_eq!(m.excluded_pairs, [[0, 1], [0, 4], [1, 2], [2, 3], [2, 4]]);
-    let told: Vec<_> = findings.iter().map(|f| (f.code, f.message.as_str())).collect();
-    // Centres 0.1 apart, radii 0.1 each: 0.1 m of overlap.
-    assert_eq!(
-        told,
-        [(
-            "links-overlap",
-            "links 'a' and 'e' overlap by 100.00 mm where all joints are at 0: they never collide with each other"
-        )]
-    );
-    let chain = "<realnoid version='1'><chain root='bc' self_collision='false' anchor='b'/></realnoid>";
-    let (_, m, _) = robot(&text(chain), "x", Base::Free);
-    assert_eq!(m.excluded_pairs, [[0, 1], [0, 4], [1, 2], [2, 3], [2, 4], [3, 4]]);
-}
-
-#[test]
-fn surfaces_and_shapes_are_told() {
-    let tag = "<realnoid><surface friction='0.5' margin='0.01'/></realnoid>";
-    let (_, m, _) = robot(&format!("<robot name='r'>{}</robot>", ball_link("a", tag)), "x", Base::Free);
-    let c = &m.colliders[0];
-    assert_eq!((c.surface.friction, c.surface.restitution, c.margin), (0.5, 0.0, 0.01));
-    let moving = format!(
-        "<robot name='r'><link name='a'>{LIMB}<collision><geometry><torus ring_radius='0.2' pipe_radius='0.05'/></geometry></collision>\
-         <collision><geometry><mesh filename='nowhere.stl'/></geometry></collision></link></robot>"
-    );
-    let (_, m, findings) = robot(&moving, "x", Base::Free);
-    assert!(matches!(m.colliders[0].form, ContactForm::Hull(_)));
-    let codes: Vec<_> = findings.iter().map(|f| f.code).collect();
-    assert_eq!(codes, ["collides-as", "does-not-collide"]);
-    assert!(findings.iter().all(|f| f.at.line == 1 && f.element.starts_with("link 'a' <")));
 }

@@ -133,12 +133,13 @@ fn polished(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
         let ((uu, vu), (uv, vv)) = (gradient(turned(STEP, 0.0)), gradient(turned(0.0, STEP)));
         let det = uu * vv - uv * vu;
         let (x, y) = (STEP * (uv * gv - vv * gu) / det, STEP * (vu * gu - uu * gv) / det);
-        if !(x.hypot(y) < 0.1) {
+        let turn = x.hypot(y);
+        if turn >= 0.1 || turn.is_nan() {
             break;
         }
         let next = turned(x, y);
         let new = apart(next);
-        if !(next.dot(new) > best.dot(way)) {
+        if next.dot(new) <= best.dot(way) {
             break;
         }
         (best, way) = (next, new);
