@@ -2,8 +2,25 @@
 //!
 //! invariant: this room alone names parry.
 
+mod broad;
+mod collect;
 mod detector;
+mod exclude;
+mod feature;
+mod forms;
+mod manifold;
+mod nearest;
+mod part;
+mod plane;
+mod polytope;
+mod raw;
+mod round;
+mod solid;
+mod surface;
 mod touch;
+mod vector;
 
+pub use collect::{Defaults, colliders};
 pub use detector::Detector;
+pub use exclude::{OVERLAP, excluded};
 pub use touch::{Normal, Placed, Touch};

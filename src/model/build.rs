@@ -83,6 +83,7 @@ impl<'a> Builder<'a> {
             dampings: vec![],
             joined: vec![],
             colliders: vec![],
+            excluded_pairs: vec![],
             effects: Effects::NONE,
         };
         let seats = vec![(0, Pose::identity()); d.links.len()];

@@ -99,6 +99,8 @@ impl Model {
             ..b.clone()
         }));
         self.dampings.extend(other.dampings.iter().map(|d| super::BodyDamping { body: by.on(d.body), ..*d }));
+        // What comes later has greater indices: the list stays ascending.
+        self.excluded_pairs.extend(other.excluded_pairs.iter().map(|pair| pair.map(|l| l + by.link)));
         self.colliders.extend(other.colliders.iter().map(|c| super::Collider {
             name: named(&c.name),
             link: c.link.map(|l| l + by.link),

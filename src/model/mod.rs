@@ -247,6 +247,8 @@ pub struct Model {
     pub joined: Vec<Joined>,
     /// What collides: shapes of links, and what stands still in the world.
     pub colliders: Vec<Collider>,
+    /// Pairs of links (both ascending) whose colliders never touch.
+    pub excluded_pairs: Vec<[usize; 2]>,
     /// What the scene calls for.
     pub effects: Effects,
 }

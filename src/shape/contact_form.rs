@@ -19,6 +19,13 @@ pub enum ContactForm {
         /// Half of each edge, m.
         half: [f64; 3],
     },
+    /// Balls about all points of a cuboid: a box whose edges are rounded.
+    RoundCuboid {
+        /// Half of each edge of the cuboid inside, m.
+        half: [f64; 3],
+        /// Of the balls, m.
+        radius: f64,
+    },
     /// The hull of two balls, at z = −half and z = half.
     Capsule {
         /// Radius at −half, m.
@@ -44,6 +51,16 @@ pub enum ContactForm {
     Cone {
         /// Of the base, m.
         radius: f64,
+        /// m.
+        half: f64,
+    },
+    /// From an ellipse at z = −half to one `top` times as large at z = half: elliptic cylinder, cone and frustum; with
+    /// half = 0 a disc.
+    Frustum {
+        /// Half axes of the base, m.
+        radii: [f64; 2],
+        /// 0 to 1.
+        top: f64,
         /// m.
         half: f64,
     },

@@ -60,6 +60,7 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         dampings: vec![],
         joined: vec![],
         colliders: vec![],
+        excluded_pairs: vec![],
         effects: Effects { gravity: true, drives: true, ..Effects::NONE },
     };
     m.bodies.push(body(&mut rng, 0, JointType::Revolute));

@@ -1,0 +1,131 @@
+//! All points in which two convex shapes touch.
+
+use super::feature::{Feature, Spot};
+use super::nearest::{Nearest, Placed, Search, separation};
+use super::raw::{Raw, SAME, reduce};
+use crate::math::V3;
+
+/// Memory of the narrow phase; made once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    pub search: Search,
+    features: [Feature; 2],
+    polygon: Vec<Spot>,
+    clipped: Vec<Spot>,
+}
+
+/// Points that are not corners have this bit in their feature.
+const CROSSING: u32 = 1 << 29;
+/// The nearest point, where no face touches.
+const NEAREST: u32 = 1 << 30;
+/// The face is that of the second shape.
+const SECOND: u32 = 1 << 28;
+
+/// Adds the points whose gap is below `reach`; `size` is that of the smaller shape.
+pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, (reach, size): (f64, f64), out: &mut Vec<Raw>) {
+    let from = out.len();
+    let round = [a.solid.round, b.solid.round];
+    let Some(near) = s.search.nearest(a, b, reach + round[0] + round[1]) else { return };
+    s.features[0].of(a.solid, &a.frame, near.normal);
+    s.features[1].of(b.solid, &b.frame, -near.normal);
+    let tolerance = 1e-6 * size + 0.02 * (-near.distance).max(0.0);
+    let face = |side: usize, n: V3<f64>| (separation(a, b, n) >= near.distance - tolerance).then_some((side, n));
+    let faces = [s.features[0].normal, s.features[1].normal.map(|n| -n)];
+    let reference = faces[0].and_then(|n| face(0, n)).or_else(|| faces[1].and_then(|n| face(1, n)));
+    if let Some((side, n)) = reference {
+        on_face(s, [a, b], (side, n), reach, out);
+    }
+    let least = out[from..].iter().fold(f64::INFINITY, |m, raw| m.min(raw.gap));
+    let gap = near.distance - round[0] - round[1];
+    if gap < reach && least > gap + tolerance + 1e-9 {
+        out.push(single(s, &near, round));
+    }
+    reduce(out, from, 1e-4 * size);
+}
+
+/// The nearest points alone.
+fn single(s: &Scratch, near: &Nearest, round: [f64; 2]) -> Raw {
+    let core = near.points;
+    if near.distance > SAME && round[0] + round[1] > 0.0 {
+        return Raw::between(NEAREST, core, round, near.normal);
+    }
+    // One spot: a smooth surface, or a corner.
+    let curve = |side: usize| match s.features[side].spots.as_slice() {
+        [spot] => spot.curve,
+        _ => 0.0,
+    };
+    let [a, b] = [curve(0), curve(1)];
+    let n = near.normal;
+    Raw::on(NEAREST, (0, n), [core[0] - n * a, core[1] + n * b], [round[0] + a, round[1] + b])
+}
+
+/// What of the other shape lies over a face; `n` from the first shape to the second.
+fn on_face(s: &mut Scratch, solids: [&Placed; 2], (side, n): (usize, V3<f64>), reach: f64, out: &mut Vec<Raw>) {
+    let (own, other) = (solids[side], solids[1 - side]);
+    let outward = if side == 0 { n } else { -n };
+    s.features[side].of(own.solid, &own.frame, outward);
+    s.features[1 - side].of(other.solid, &other.frame, -outward);
+    let face = &s.features[side].spots;
+    s.polygon.clear();
+    s.polygon.extend_from_slice(&s.features[1 - side].spots);
+    for k in 0..face.len() {
+        let (p, q) = (face[k].at, face[(k + 1) % face.len()].at);
+        let edge = q - p;
+        let away = edge.cross(outward);
+        clip(&s.polygon, (p, away, k as u32), &mut s.clipped);
+        std::mem::swap(&mut s.polygon, &mut s.clipped);
+    }
+    let flag = if side == 0 { 0 } else { SECOND };
+    for spot in &s.polygon {
+        let height = outward.dot(spot.at - face[0].at);
+        let foot = spot.at - outward * height;
+        let center = spot.at + outward * spot.curve;
+        let radius = [own.solid.round, other.solid.round + spot.curve];
+        let raw = if side == 0 {
+            Raw::on(spot.id | flag, (0, n), [foot, center], radius)
+        } else {
+            Raw::on(spot.id | flag, (1, n), [center, foot], [radius[1], radius[0]])
+        };
+        if raw.gap < reach {
+            out.push(raw);
+        }
+    }
+}
+
+/// Sutherland–Hodgman against one plane through `p` with the outward vector `away` (of any length): a polygon, the two
+/// ends of an edge, or a point.
+fn clip(polygon: &[Spot], (p, away, plane): (V3<f64>, V3<f64>, u32), out: &mut Vec<Spot>) {
+    out.clear();
+    let length = away.dot(away).sqrt();
+    if length == 0.0 {
+        return out.extend_from_slice(polygon);
+    }
+    let beyond = |spot: &Spot| away.dot(spot.at - p) / length;
+    // What lies on the border, up to rounding, is inside.
+    let inside = |d: f64| d <= 1e-9 * length.max(1e-3);
+    for (i, spot) in polygon.iter().enumerate() {
+        let d = beyond(spot);
+        if inside(d) {
+            out.push(*spot);
+        }
+        let next = i + 1;
+        if next == polygon.len() && polygon.len() < 3 {
+            break;
+        }
+        let other = &polygon[next % polygon.len()];
+        let e = beyond(other);
+        if inside(d) != inside(e) {
+            let t = d / (d - e);
+            let at = spot.at + (other.at - spot.at) * t;
+            let curve = spot.curve + (other.curve - spot.curve) * t;
+            out.push(Spot { at, curve, id: crossing(spot.id, other.id, plane) });
+        }
+    }
+}
+
+/// A name for where the edge between two corners crosses a plane; the same seen from either end.
+fn crossing(a: u32, b: u32, plane: u32) -> u32 {
+    let (low, high) = (a.min(b), a.max(b));
+    let mixed = low.wrapping_mul(0x9E37_79B1) ^ high.wrapping_mul(0x85EB_CA6B) ^ plane.wrapping_mul(0xC2B2_AE35);
+    CROSSING | ((mixed ^ mixed >> 15) & 0x0FFF_FFFF)
+}
