@@ -185,3 +185,39 @@ fn explore4() {
         }
     }
 }
+
+#[test]
+fn explore5() {
+    let g1 = "/work/main/.venv/lib/python3.12/site-packages/cmeel.prefix/share/example-robot-data/robots/g1_description/urdf/g1_29dof_rev_1_0.urdf";
+    for integrator in [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler] {
+        for h in [5e-3, 1e-3, 2.5e-4] {
+            let mut m = feet(g1, 1.0);
+            println!("colliders {} {:?}", m.colliders.len(), m.effects);
+            m.effects.drives = false;
+            let mut w = world(m, settings(h, integrator));
+            start(&mut w, 0.9, Vec3::zeros(), Vec3::zeros());
+            let mut e = w.energy();
+            let (mut grown, mut most) = (0.0f64, 0.0f64);
+            let n = (0.6 / h) as usize;
+            let (mut cpu, mut ncont) = (0.0, 0);
+            for _ in 0..n {
+                let c = std::time::Instant::now();
+                w.advance();
+                cpu += c.elapsed().as_secs_f64();
+                ncont += w.contacts().len();
+                let f = w.energy();
+                let d = f.kinetic + f.potential - e.kinetic - e.potential;
+                grown += d.max(0.0);
+                most = most.max(d);
+                e = f;
+            }
+            println!(
+                "{integrator:?} {h}: grown {grown:e} most {most:e} kin {:e} us {} contacts {} {:?}",
+                e.kinetic,
+                cpu / n as f64 * 1e6,
+                ncont as f64 / n as f64,
+                w.stats()
+            );
+        }
+    }
+}

@@ -83,15 +83,16 @@ impl Rbx {
                     report.halvings += 1;
                     continue;
                 }
-                End::Converged => self.take(m, mid, part.h),
-                End::Unsettled => {
-                    report.unsettled = true;
+                end @ (End::Converged | End::Unsettled) => {
+                    report.unsettled |= matches!(end, End::Unsettled);
                     self.take(m, mid, part.h);
+                    self.pay(m, &mid.start, part.gravity, report);
                 }
                 End::NoContraction => {
                     report.unsettled = true;
                     self.explicit_piece(m, mid, commands, &part);
                     self.guard(m, mid, part.gravity, report);
+                    self.pay(m, &mid.start, part.gravity, report);
                 }
             }
             done += piece;

@@ -3,9 +3,11 @@
 mod apart;
 mod breaking;
 mod coupled;
+mod forest;
 mod guard;
 mod honour;
 mod midpoint;
+mod paid;
 mod rbx;
 mod rk4;
 mod sleep;

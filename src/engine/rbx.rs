@@ -1,6 +1,7 @@
 //! rbx: reduced coordinates, one step at a time.
 
 use super::midpoint::Midpoint;
+use super::paid::Paid;
 use super::rk4::Stages;
 use super::sleep::Sleep;
 use crate::dynamics::{Kinematics, Scheme, Workspace, exponential_step, move_coordinates, normalize, write_damping};
@@ -222,6 +223,8 @@ pub struct StepReport {
     pub guarded: u32,
     /// What they lost, J.
     pub guarded_energy: f64,
+    /// Energy that contacts would have made out of the error of the step, and that was taken out, J.
+    pub trimmed_energy: f64,
     /// A 3DOF group was at its pole.
     pub at_pole: bool,
     /// The new state would not have been finite: it was not taken.
@@ -241,6 +244,8 @@ pub struct Rbx {
     /// Speeds that keep bodies out of each other.
     pub(super) lift: Vec<f64>,
     unlifted: Vec<f64>,
+    /// `None` if nothing can touch.
+    pub(super) paid: Option<Paid>,
     /// `None` if nothing ever rests.
     pub(super) sleep: Option<Sleep>,
     /// The step, s, of which a halved one is a part.
@@ -252,14 +257,15 @@ pub struct Rbx {
 impl Rbx {
     /// At the initial state.
     pub fn new(m: &Model) -> Self {
-        let state = State::initial(m);
+        let (state, axes) = (State::initial(m), AxisSet::new(m));
         Self {
-            axes: AxisSet::new(m),
             ws: Workspace::new(m),
             qdd: vec![0.0; m.nv],
             before: state.clone(),
             lift: vec![0.0; m.nv],
             unlifted: vec![0.0; m.nq],
+            paid: axes.contacts().is_some().then(|| Paid::new(m)),
+            axes,
             sleep: Sleep::new(m),
             whole_step: 0.0,
             midpoint: None,
@@ -347,6 +353,9 @@ impl Rbx {
         }
         self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);
+        let before = std::mem::take(&mut self.before);
+        self.pay(m, &before, s.gravity, report);
+        self.before = before;
     }
 
     /// False, with the state as before, if the step is not smooth.

@@ -88,7 +88,10 @@ pub struct AxisSet {
     pub effort: Vec<f64>,
     /// Work since the start.
     pub work: Work,
-    pub(super) paid: (f64, f64),
+    /// Per axis, then per soft direction: work of the last step with the speeds at its start, and at its end, J.
+    pub(super) paid: Vec<(f64, f64)>,
+    /// The same of the damping of bodies.
+    pub(super) damped: (f64, f64),
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
     /// Per axis: its tree is out of the computation.
@@ -135,7 +138,8 @@ impl AxisSet {
             couplings: Couplings::new(model),
             answers: Some(Box::new(Answers::new(model))),
             work: Work::default(),
-            paid: (0.0, 0.0),
+            paid: vec![(0.0, 0.0); n + model.softs.len()],
+            damped: (0.0, 0.0),
             worst_stop: 0.0,
             resting: vec![false; n],
             mean: false,
@@ -322,7 +326,8 @@ impl AxisSet {
     /// Ends an implicit step of `h` seconds with these accelerations: remembers the places, writes efforts and work. `q` (nq) is
     /// the state of the last pass.
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
-        self.paid = (0.0, 0.0);
+        self.paid.fill((0.0, 0.0));
+        self.damped = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
             if self.resting[i] {
                 continue;
@@ -346,15 +351,19 @@ impl AxisSet {
             };
             self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
             self.effort[i] = effort;
-            self.paid.0 += 0.5 * h * total * self.speed[i];
-            self.paid.1 += 0.5 * h * total * end;
+            self.paid[i] = (0.5 * h * total * self.speed[i], 0.5 * h * total * end);
             self.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
         }
     }
 
     /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.
     pub fn paid(&self) -> (f64, f64) {
-        self.paid
+        self.paid.iter().fold(self.damped, |sum, p| (sum.0 + p.0, sum.1 + p.1))
+    }
+
+    /// The same per axis, then per direction in which a joint yields.
+    pub fn paid_by(&self) -> &[(f64, f64)] {
+        &self.paid
     }
 
     /// Per axis: inertia of the rotor that counts, kg·m² or kg.

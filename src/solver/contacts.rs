@@ -3,7 +3,8 @@
 //! Notation: J(q) takes velocities v to the velocity u of side 1 against side 0 at a contact, along (normal, tangent, tangent);
 //! 0, m, 1 mark the start, the middle and the end of a step of h. Derived in `docs/decisions/0016-contacts.md`.
 
-use super::rows::{Kind, Lift, LiftKind, Rows, Solved};
+use super::lifts::{Lift, LiftKind};
+use super::rows::{Kind, Rows, Solved};
 use crate::contact::{Detector, Placed, Touch};
 use crate::dynamics::{Kinematics, Push, Response, Workspace, kinematics};
 use crate::math::V3;
@@ -143,6 +144,16 @@ impl Contacts {
         self.old.clear();
         self.rests.fill(false);
         (self.h, self.worst) = (0.0, 0.0);
+    }
+
+    /// Poses and velocities at the start of the step.
+    pub fn start(&self) -> &Kinematics {
+        &self.start
+    }
+
+    /// The bodies of contacts that carried something in the last step and act on something.
+    pub fn carrying_bodies(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        self.points.iter().filter(|p| p.is_live() && p.impulse.normal > 0.0).map(|p| p.touch.bodies)
     }
 
     /// Which bodies rest: to what moves they are as heavy as the world, and what lies between them stays as it is.

@@ -4,7 +4,8 @@
 
 use super::axis_set::{AxisSet, StateRef, StepStart};
 use super::contacts::{Contacts, Pass};
-use super::rows::{Kind, Lift, LiftKind, Rows};
+use super::lifts::{Lift, LiftKind};
+use super::rows::{Kind, Rows};
 use crate::dynamics::{Push, Response, Workspace};
 use crate::model::{AxisSlot, Coupling, Model};
 

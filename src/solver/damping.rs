@@ -15,8 +15,7 @@ impl AxisSet {
         (h, qdd): (f64, &[f64]),
     ) {
         let [start, end] = damping_powers(m, ws, q, [&|k| v[k], &|k| v[k] + h * qdd[k]]);
-        self.paid.0 += 0.5 * h * start;
-        self.paid.1 += 0.5 * h * end;
+        self.damped = (0.5 * h * start, 0.5 * h * end);
         self.work.losses -= 0.5 * h * (start + end);
     }
 }

@@ -2,7 +2,7 @@
 //! dense factor of `Y Yᵀ + R`. Semismooth Newton on the projection: a row is free if a step of descent stays inside its
 //! bounds, else it stands at the bound. Cones and discs keep their impulses and are swept again.
 
-use super::rows::{Block, CHUNK, FINISH_ROWS, Inner, Kind, Rows};
+use super::rows::{FINISH_ROWS, Inner, Kind, Rows};
 
 /// Times that the active set may change.
 const TRIES: u32 = 3;
@@ -109,7 +109,7 @@ impl Rows {
             let a = &self.blocks[s.free[i]];
             for k in 0..=i {
                 let sum: f64 = (0..k).map(|j| s.factor[i * n + j] * s.factor[k * n + j]).sum();
-                let own = if i == k { a.inner.trace() } else { self.between(a, &self.blocks[s.free[k]]) };
+                let own = if i == k { a.inner.trace() } else { self.between((a, 0), (&self.blocks[s.free[k]], 0)) };
                 let left = own - sum;
                 s.factor[i * n + k] = match () {
                     () if i > k => left * s.factor[k * n + k],
@@ -131,22 +131,5 @@ impl Rows {
             let sum: f64 = (i + 1..n).map(|j| s.factor[j * n + i] * s.step[j]).sum();
             s.step[i] = (s.step[i] - sum) * s.factor[i * n + i];
         }
-    }
-
-    /// `y_a·y_b` of two single rows.
-    fn between(&self, a: &Block, b: &Block) -> f64 {
-        let (mut i, mut k, mut sum) = (a.ids.start, b.ids.start, 0.0);
-        while i < a.ids.end && k < b.ids.end {
-            match self.ids[i].cmp(&self.ids[k]) {
-                std::cmp::Ordering::Less => i += 1,
-                std::cmp::Ordering::Greater => k += 1,
-                std::cmp::Ordering::Equal => {
-                    let (x, y) = (a.values + (i - a.ids.start) * CHUNK, b.values + (k - b.ids.start) * CHUNK);
-                    sum += (0..CHUNK).map(|n| self.values[x + n] * self.values[y + n]).sum::<f64>();
-                    (i, k) = (i + 1, k + 1);
-                }
-            }
-        }
-        sum
     }
 }

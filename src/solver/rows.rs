@@ -92,29 +92,6 @@ impl Solved {
     }
 }
 
-/// What a lift asks of a block.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LiftKind {
-    /// Nothing.
-    #[default]
-    Off,
-    /// At least 0.
-    AtLeast,
-    /// 0.
-    Exactly,
-}
-
-/// Position pass of the first row of a block.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Lift {
-    /// What is asked.
-    pub kind: LiftKind,
-    /// Without impulses.
-    pub bias: f64,
-    /// Found.
-    pub impulse: f64,
-}
-
 /// The rows of a problem. Adding blocks may allocate; solving does not.
 #[derive(Clone, Debug)]
 pub struct Rows {
@@ -124,7 +101,7 @@ pub struct Rows {
     pub(super) values: Vec<f64>,
     pub(super) w: Vec<f64>,
     pub(super) finish: super::finish::Scratch,
-    pub(super) lifts: Vec<Lift>,
+    pub(super) lifts: super::lifts::Lifts,
 }
 
 impl Rows {
@@ -137,7 +114,7 @@ impl Rows {
             values: vec![],
             w: vec![0.0; width],
             finish: Default::default(),
-            lifts: vec![],
+            lifts: super::lifts::Lifts::new(width),
         }
     }
 
@@ -150,7 +127,18 @@ impl Rows {
         self.rows.resize(first + rows, Row::default());
         self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off });
         self.finish.make_room(self.blocks.len(), self.rows.len());
+        self.lifts.add();
         self.blocks.len() - 1
+    }
+
+    /// Drops the blocks from this index on and keeps their memory: adding as many again allocates nothing.
+    pub fn truncate(&mut self, blocks: usize) {
+        let Some(b) = self.blocks.get(blocks) else { return };
+        self.rows.truncate(b.first);
+        self.ids.truncate(b.ids.start);
+        self.values.truncate(b.values);
+        self.blocks.truncate(blocks);
+        self.lifts.truncate(blocks);
     }
 
     /// Chunks of a block, and the numbers of its row `n` in them.
@@ -164,16 +152,6 @@ impl Rows {
     /// Row `n` of a block.
     pub fn row(&mut self, block: usize, n: usize) -> &mut Row {
         &mut self.rows[self.blocks[block].first + n]
-    }
-
-    /// Drops the blocks from this index on; keeps their memory.
-    pub fn truncate(&mut self, blocks: usize) {
-        let Some(b) = self.blocks.get(blocks) else { return };
-        let (first, start, values) = (b.first, b.ids.start, b.values);
-        self.blocks.truncate(blocks);
-        self.rows.truncate(first);
-        self.ids.truncate(start);
-        self.values.truncate(values);
     }
 
     /// Index of the first row of a block.
@@ -285,35 +263,6 @@ impl Rows {
         self.blocks.iter().filter(|b| !b.is_off()).map(size).fold(0.0, f64::max)
     }
 
-    /// Lift of a block.
-    pub fn lift(&mut self, block: usize) -> &mut Lift {
-        if self.lifts.len() < self.blocks.len() {
-            self.lifts.resize(self.blocks.len(), Lift::default());
-        }
-        &mut self.lifts[block]
-    }
-
-    /// Provisional.
-    pub fn solve_lifts(&mut self, _sweeps: u32, _aim: f64) {
-        self.w.fill(0.0);
-        for _ in 0..200 {
-            for k in 0..self.blocks.len() {
-                let lift = self.lifts[k];
-                if self.blocks[k].is_off() || lift.kind == LiftKind::Off {
-                    continue;
-                }
-                let b = &self.blocks[k];
-                let h = self.own(b, 0, 0);
-                let mut x = lift.impulse - (lift.bias + self.reach(b, 0)) / h;
-                if lift.kind == LiftKind::AtLeast {
-                    x = x.max(0.0);
-                }
-                self.push(k, 0, x - lift.impulse);
-                self.lifts[k].impulse = x;
-            }
-        }
-    }
-
     /// Σ x·(bias + y·w/2) for the w of [`Rows::gather`].
     pub(super) fn work(&self) -> f64 {
         let of = |b: &Block, n: usize| {
@@ -326,11 +275,15 @@ impl Rows {
     /// `y·w`.
     #[inline(always)]
     pub(super) fn reach(&self, b: &Block, n: usize) -> f64 {
-        let length = b.ids.len() * CHUNK;
-        let y = &self.values[b.values + n * length..b.values + (n + 1) * length];
+        self.reach_of(&self.w, b, n)
+    }
+
+    /// `y·w` of a row, with another w.
+    #[inline(always)]
+    pub(super) fn reach_of(&self, w: &[f64], b: &Block, n: usize) -> f64 {
         let mut sum = [0.0; CHUNK];
-        for (id, y) in self.ids[b.ids.clone()].iter().zip(y.chunks_exact(CHUNK)) {
-            let w = &self.w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
+        for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).chunks_exact(CHUNK)) {
+            let w = &w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
             for k in 0..CHUNK {
                 sum[k] += y[k] * w[k];
             }
@@ -341,18 +294,48 @@ impl Rows {
     /// `w += y x`.
     #[inline(always)]
     pub(super) fn push(&mut self, block: usize, n: usize, x: f64) {
+        let mut w = std::mem::take(&mut self.w);
+        self.push_into(&mut w, &self.blocks[block], n, x);
+        self.w = w;
+    }
+
+    /// `w += y x`, of another w.
+    #[inline(always)]
+    pub(super) fn push_into(&self, w: &mut [f64], b: &Block, n: usize, x: f64) {
         if x == 0.0 {
             return;
         }
-        let b = &self.blocks[block];
-        let length = b.ids.len() * CHUNK;
-        let y = &self.values[b.values + n * length..b.values + (n + 1) * length];
-        for (id, y) in self.ids[b.ids.clone()].iter().zip(y.chunks_exact(CHUNK)) {
-            let w = &mut self.w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
+        for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).chunks_exact(CHUNK)) {
+            let w = &mut w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
             for k in 0..CHUNK {
                 w[k] += y[k] * x;
             }
         }
+    }
+
+    /// The numbers of a row, in the order of its chunks.
+    #[inline(always)]
+    pub(super) fn numbers(&self, b: &Block, n: usize) -> &[f64] {
+        let length = b.ids.len() * CHUNK;
+        &self.values[b.values + n * length..b.values + (n + 1) * length]
+    }
+
+    /// `y_a·y_b` of two rows, each given by its block and its number in it.
+    pub(super) fn between(&self, (a, n): (&Block, usize), (b, m): (&Block, usize)) -> f64 {
+        let (x, y) = (self.numbers(a, n).chunks_exact(CHUNK), self.numbers(b, m).chunks_exact(CHUNK));
+        let (mut x, mut y) = (self.ids[a.ids.clone()].iter().zip(x), self.ids[b.ids.clone()].iter().zip(y));
+        let (mut i, mut k, mut sum) = (x.next(), y.next(), 0.0);
+        while let (Some((p, own)), Some((q, other))) = (i, k) {
+            match p.cmp(q) {
+                std::cmp::Ordering::Less => i = x.next(),
+                std::cmp::Ordering::Greater => k = y.next(),
+                std::cmp::Ordering::Equal => {
+                    sum += own.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+                    (i, k) = (x.next(), y.next());
+                }
+            }
+        }
+        sum
     }
 
     /// Velocity of a row with all impulses, what its softness gives way included.

@@ -38,6 +38,8 @@ pub struct Stats {
     pub guarded_energy: f64,
     /// By how much an axis was outside its range at most (a soft stop, a start there, an angle of a 3DOF group); rad or m.
     pub worst_stop_violation: f64,
+    /// Energy that steps in contact would have made out of nothing, and that was taken out of the velocities, J.
+    pub trimmed_energy: f64,
     /// The deepest penetration of two bodies at the start or the end of a step, m.
     pub worst_penetration: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
@@ -214,6 +216,7 @@ impl World {
         s.halvings += u64::from(report.halvings);
         s.guarded_pieces += u64::from(report.guarded);
         s.guarded_energy += report.guarded_energy;
+        s.trimmed_energy += report.trimmed_energy;
         s.worst_stop_violation = self.engine.axes.worst_stop;
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);

@@ -95,3 +95,23 @@ pub fn balls(list: &[(f64, f64)], own: Surface, floor: Collider) -> Model {
     m.set_colliders(colliders);
     m
 }
+
+/// A robot from a file, with the spheres of its `<collision>` elements on the ground.
+pub fn feet(path: &str, friction: f64) -> Model {
+    use realnoid::description::Geometry;
+    let text = std::fs::read_to_string(path).unwrap();
+    let d = description::read(&text, path).description.unwrap();
+    let mut m = model(&text, Base::Free);
+    let mut colliders = vec![ground(friction)];
+    for link in &d.links {
+        for c in &link.collisions {
+            if let Geometry::Sphere { radius } = c.geometry {
+                let pose = c.origin.pose();
+                let collider = on_link(&m, &link.name, ContactForm::Ball { radius }, surface(1.0));
+                colliders.push(Collider { pose, ..collider });
+            }
+        }
+    }
+    m.set_colliders(colliders);
+    m
+}
