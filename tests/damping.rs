@@ -49,7 +49,7 @@ fn momenta(damping: &str, settings: Settings, duration: f64, twist: ([f64; 3], [
 #[test]
 fn a_free_body_decays_by_the_law_to_rounding() {
     for integrator in ALL {
-        for step in [1e-4, 1e-3, 1e-2] {
+        for step in [1e-4_f64, 1e-3, 1e-2] {
             for d in [0.05, 0.5, 0.999] {
                 let law = (1.0_f64 - d).powf(1.0);
                 // Rounding; and what the rule leaves: the iteration of the midpoint rule 10⁻⁸ (1 + v) times its
