@@ -8,10 +8,10 @@ import time
 
 import pytest
 from conftest import BINARY, nanoseconds, wait_until
+from cyclone import listen as cyclone_listen
 from geometry_msgs.msg import TwistStamped, WrenchStamped
 from rosgraph_msgs.msg import Clock
 from simulation import ORIGIN, columns, refused, simulate
-from tf2_msgs.msg import TFMessage
 
 ROOT = BINARY.parents[2]
 LEG_AND_BALL = ROOT / "config/leg_and_ball.yaml"
@@ -143,10 +143,14 @@ def test_the_parameter_ground_lays_one(start, block):
 
 def test_a_scene_moves_its_bodies_on_tf_and_keeps_the_static_ones(start):
     bench = start("-p", f"scene:={LEG_AND_BALL}", "-p", "start:=free", urdf=ROOT / "urdf/leg.urdf")
-    moving = bench.probe.listen(TFMessage, "/tf")
-    frames = lambda: {t.child_frame_id: t for m in list(moving) for t in m.transforms}
-    wait_until(lambda: frames().get("ball") and frames()["ball"].transform.translation.x > 0.4, what="the ball to be kicked")
-    assert frames()["ball"].header.frame_id == "world" and "wall" not in frames()
+    tf, frames = cyclone_listen("tf", bench.domain), {}
+
+    def kicked():
+        frames.update({t.child_frame_id: t for m in tf.take_all() for t in m.transforms})
+        return "ball" in frames and frames["ball"].transform.translation.x > 0.4
+
+    wait_until(kicked, what="the ball to be kicked")
+    assert frames["ball"].header.frame_id == "world" and "wall" not in frames
     assert list(bench.states[-1].name) == ["hip_pitch", "knee_pitch", "ankle_pitch"]
     wrenches = bench.probe.listen(WrenchStamped, "wrench/ball")
     wait_until(lambda: len(wrenches) > 10, what="the wrench of the ball")
@@ -172,9 +176,9 @@ def test_parameters_win_over_the_scene(start, tmp_path, block):
 def test_paused_time_stands_until_it_is_let_go(start):
     bench = start("-p", "start:=paused", urdf=ORIGIN)
     clocks = bench.probe.listen(Clock, "/clock")
-    moving = bench.probe.listen(TFMessage, "/tf")
+    moving = cyclone_listen("tf", bench.domain)
     states = len(bench.states)
-    wait_until(lambda: len(clocks) > 20 and len(bench.states) > states + 20 and moving, what="states of a world that stands")
+    wait_until(lambda: len(clocks) > 20 and len(bench.states) > states + 20 and moving.take_all(), what="states of a world that stands")
     assert {nanoseconds(c.clock) for c in clocks} == {0}
     assert {nanoseconds(s.header.stamp) for s in bench.states} == {0}
     client = bench.probe.parameters()
