@@ -66,6 +66,11 @@ impl ConeBlock {
         self.h[0] + self.h[3] + self.h[5]
     }
 
+    /// The normal's own mobility, and the sum of those of the tangents.
+    pub fn diagonal(&self) -> [f64; 2] {
+        [self.h[0], self.h[3] + self.h[5]]
+    }
+
     /// H x.
     pub fn times(&self, x: [f64; 3]) -> [f64; 3] {
         let h = &self.h;

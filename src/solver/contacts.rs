@@ -14,6 +14,8 @@ use crate::model::{JointType, Model, Surface};
 const ERP: f64 = 0.2;
 /// Share of the velocities at the start to which the rows are solved if that is possible.
 const AIM: f64 = 1e-12;
+/// See `Contacts::least`: share of 1 / mass.
+const HELD: f64 = 1e-12;
 /// Gaps that differ by less are equal, m.
 const FLUSH: f64 = 1e-10;
 
@@ -105,6 +107,8 @@ pub struct Contacts {
     end: Kinematics,
     v1: Vec<f64>,
     ids: Vec<u32>,
+    /// Blocks that give way by less (trace, 1/kg) do not: what two bodies of a locked limb do to each other is rounding.
+    least: f64,
     /// Step of the impulses of `old`, s.
     h: f64,
     /// The deepest penetration at the start of a step so far, m.
@@ -131,6 +135,7 @@ impl Contacts {
             end: k,
             v1: vec![0.0; m.nv],
             ids: vec![],
+            least: HELD / m.bodies.iter().map(|b| b.mass).sum::<f64>(),
             h: 0.0,
             worst: 0.0,
             tempered: 0,
@@ -271,8 +276,15 @@ impl Contacts {
         kinematics(m, &mut self.end, pass.q, &self.v1);
         for point in self.points.iter_mut().filter(|p| p.is_live()) {
             point.place(&self.middle, pass);
-            let mut target =
-                Target { m, ws, response: &mut *response, rows: &mut *rows, ids: &mut self.ids, q: pass.q };
+            let mut target = Target {
+                m,
+                ws,
+                response: &mut *response,
+                rows: &mut *rows,
+                ids: &mut self.ids,
+                q: pass.q,
+                least: self.least,
+            };
             point.add_cone(&mut target, &self.middle);
             point.aim(target.rows, &self.middle, &self.end);
             point.add_discs(&mut target, &self.middle, &self.end);
@@ -455,6 +467,9 @@ impl Point {
             t.response.row(t.m, t.ws, t.q, &pushes, t.rows.response(block, n));
         }
         t.rows.seal(block);
+        if t.rows.trace(block) < t.least {
+            t.rows.switch_off(block);
+        }
         block
     }
 
@@ -556,6 +571,8 @@ struct Target<'a> {
     rows: &'a mut Rows,
     ids: &'a mut Vec<u32>,
     q: &'a [f64],
+    /// Less mobility is rounding.
+    least: f64,
 }
 
 impl Impulse {

@@ -55,6 +55,8 @@ struct Dense {
     bias: Vec<f64>,
     x: Vec<f64>,
     velocity: Vec<f64>,
+    /// Impulses on the way down.
+    at: Vec<f64>,
     /// Which have an impulse: their velocity is 0.
     pushes: Vec<bool>,
     free: Vec<usize>,
@@ -85,7 +87,7 @@ impl Dense {
     fn resize(&mut self, n: usize) {
         self.a.resize(n * n, 0.0);
         self.factor.resize(n);
-        for v in [&mut self.bias, &mut self.x, &mut self.velocity] {
+        for v in [&mut self.bias, &mut self.x, &mut self.velocity, &mut self.at] {
             v.resize(n, 0.0);
         }
         self.pushes.resize(n, false);
@@ -191,7 +193,10 @@ impl Rows {
             for i in 0..n {
                 d.bias[i] = l.of[l.active[i]].bias - SOFT * l.own[i] * d.x[i];
             }
-            d.pivot(l, wanted);
+            d.pivot(l, 0.1 * wanted);
+            if d.violation(l) <= wanted {
+                break;
+            }
         }
         for (k, x) in l.active.iter().zip(&mut d.x) {
             let lift = &mut l.of[*k];
@@ -212,33 +217,74 @@ impl Rows {
 }
 
 impl Dense {
-    /// Exchanges rows until none is wrong: those with an impulse have a velocity of 0, the others one that is not less.
+    /// Exchanges rows until none is wrong: those with an impulse have a velocity of 0, the others one that is not less. All
+    /// wrong ones at once as long as that makes them fewer, then one at a time on the way down the energy, which ends.
     fn pivot(&mut self, l: &Lifts, slack: f64) {
         let n = l.active.len();
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
-        for _ in 0..4 * n + 4 {
+        loop {
             self.solve(&l.own);
-            let once = |i: usize| l.of[l.active[i]].kind == LiftKind::AtLeast;
-            let is_wrong =
-                |d: &Self, i: usize| once(i) && if d.pushes[i] { d.x[i] < 0.0 } else { d.velocity[i] < -slack };
-            let wrong = (0..n).filter(|i| is_wrong(self, *i)).count();
+            let wrong = (0..n).filter(|i| self.is_wrong(l, *i, slack)).count();
             if wrong == 0 {
                 return;
             }
-            let all = wrong < fewest || patience > 0;
             if wrong < fewest {
                 (fewest, patience) = (wrong, PATIENCE);
+            } else if patience > 0 {
+                patience -= 1;
             } else {
-                patience = patience.saturating_sub(1);
+                return self.descend(l, slack);
             }
-            // Alone, the last one: that ends (Murty 1974).
-            let first = if all { None } else { (0..n).rev().find(|i| is_wrong(self, *i)) };
-            for i in first.map_or(0..n, |i| i..i + 1) {
-                if is_wrong(self, i) {
-                    self.pushes[i] = !self.pushes[i];
-                }
+            for i in 0..n {
+                self.pushes[i] ^= self.is_wrong(l, i, slack);
             }
         }
+    }
+
+    fn is_wrong(&self, l: &Lifts, i: usize, slack: f64) -> bool {
+        let lift = &l.of[l.active[i]];
+        lift.kind == LiftKind::AtLeast && if self.pushes[i] { self.x[i] < 0.0 } else { self.velocity[i] < -slack }
+    }
+
+    /// The active set of Lawson and Hanson (1974), from the impulses of the sweeps: each step lowers the energy.
+    fn descend(&mut self, l: &Lifts, slack: f64) {
+        let n = l.active.len();
+        for (i, k) in l.active.iter().enumerate() {
+            self.at[i] = l.of[*k].impulse;
+            self.pushes[i] = self.at[i] > 0.0 || l.of[*k].kind == LiftKind::Exactly;
+        }
+        for _ in 0..8 * n + 8 {
+            self.solve(&l.own);
+            let once = |i: usize| l.of[l.active[i]].kind == LiftKind::AtLeast;
+            let share = |d: &Self, i: usize| d.at[i] / (d.at[i] - d.x[i]);
+            let blocks = |d: &Self, i: usize| d.pushes[i] && once(i) && d.x[i] < 0.0;
+            let nearest =
+                (0..n).filter(|i| blocks(self, *i)).min_by(|i, k| share(self, *i).total_cmp(&share(self, *k)));
+            let part = nearest.map_or(1.0, |i| share(self, i));
+            for i in 0..n {
+                self.at[i] += part * (self.x[i] - self.at[i]);
+            }
+            if let Some(i) = nearest {
+                (self.at[i], self.pushes[i]) = (0.0, false);
+                continue;
+            }
+            let worst =
+                (0..n).filter(|i| !self.pushes[*i]).min_by(|i, k| self.velocity[*i].total_cmp(&self.velocity[*k]));
+            match worst.filter(|i| self.velocity[*i] < -slack) {
+                Some(i) => self.pushes[i] = true,
+                None => return,
+            }
+        }
+    }
+
+    /// The largest, without softness.
+    fn violation(&self, l: &Lifts) -> f64 {
+        let of = |(i, k): (usize, &usize)| {
+            let (lift, own, x) = (&l.of[*k], l.own[i], self.x[i]);
+            let hard = self.velocity[i] - self.bias[i] + lift.bias;
+            (x - lift.clipped(x - hard / own)).abs() * own
+        };
+        l.active.iter().enumerate().map(of).fold(0.0, f64::max)
     }
 
     /// Impulses and velocities for the present choice.

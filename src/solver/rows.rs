@@ -5,6 +5,11 @@ use super::cone::{ConeBlock, Plane, disc};
 
 /// Numbers in a chunk of w.
 pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
+/// A visit of a block stays near what it had before, by this share of its trace: that moves no solution, and a block that is
+/// held in some direction has one.
+const NEAR: f64 = 1e-9;
+/// A contact whose normal moves by less than this share of its tangents is held.
+const DEAD: f64 = 1e-12;
 /// More rows than this are left to the iteration: the direct finish costs their cube.
 pub const FINISH_ROWS: usize = 60;
 
@@ -126,7 +131,7 @@ impl Rows {
         self.values.resize(values + rows * ids.len() * CHUNK, 0.0);
         self.rows.resize(first + rows, Row::default());
         self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off });
-        self.finish.make_room(self.blocks.len(), self.rows.len());
+        self.finish.make_room(self.rows.len());
         self.lifts.add();
         self.blocks.len() - 1
     }
@@ -207,6 +212,11 @@ impl Rows {
         dot(y(i), y(k)) + softness
     }
 
+    /// Trace of a block's own part of `Y Yᵀ + R`.
+    pub fn trace(&self, block: usize) -> f64 {
+        self.blocks[block].inner.trace()
+    }
+
     /// Forgets all impulses.
     pub fn reset(&mut self) {
         for row in &mut self.rows {
@@ -235,9 +245,7 @@ impl Rows {
             }
         }
         solved.residual = self.residual();
-        let bounded = |b: &Block| matches!(b.kind, Kind::Bounds { .. });
-        let direct = self.rows.len() <= FINISH_ROWS && self.blocks.iter().any(bounded);
-        if solved.residual > wanted && direct {
+        if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
             (solved.residual, solved.tries) = self.finish(solved.residual, wanted);
         }
         solved
@@ -357,11 +365,16 @@ fn single(h: f64) -> Inner {
 }
 
 fn pair([a, b, d]: [f64; 3]) -> Inner {
-    if a * d - b * b > 0.0 && a > 0.0 { Inner::Pair(Plane::new(a, b, d), a + d) } else { Inner::Off }
+    let (trace, more) = (a + d, NEAR * (a + d));
+    if trace > 0.0 { Inner::Pair(Plane::new(a + more, b, d + more), trace) } else { Inner::Off }
 }
 
+/// A contact that gives way along its normal takes part, also where it is held along a tangent.
 fn cone(h: [f64; 6]) -> Inner {
-    if h[0] > 0.0 && h[3] > 0.0 && h[5] > 0.0 { Inner::Cone(ConeBlock::new(h)) } else { Inner::Off }
+    let trace = h[0] + h[3] + h[5];
+    let more = NEAR * trace;
+    let near = [h[0] + more, h[1], h[2], h[3] + more, h[4], h[5] + more];
+    if h[0] > DEAD * trace { Inner::Cone(ConeBlock::new(near)) } else { Inner::Off }
 }
 
 /// Of two rows over the same chunks.
