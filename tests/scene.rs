@@ -76,7 +76,7 @@ fn joined_robots_move_as_if_alone() {
         let commands: Vec<_> = alone.commands().iter().chain(beside.commands()).copied().collect();
         together.set_commands(&commands).unwrap();
         for _ in 0..steps {
-            [&mut alone, &mut beside, &mut together].map(World::advance);
+            [&mut alone, &mut beside, &mut together].into_iter().for_each(World::advance);
         }
         let apart: Vec<f64> = alone.state().q.iter().chain(&beside.state().q).copied().collect();
         let allowed = if integrator == Integrator::SemiImplicitEuler { 0.0 } else { 1e-8 * steps as f64 };
