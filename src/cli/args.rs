@@ -32,6 +32,9 @@ pub enum Command {
     Check {
         /// URDF file; the embedded humanoid if none is given.
         urdf: Option<PathBuf>,
+        /// A scene file, checked with the robot in it.
+        #[arg(long)]
+        scene: Option<PathBuf>,
         /// `--package`.
         #[command(flatten)]
         packages: PackageArgs,
@@ -83,6 +86,12 @@ pub struct InspectArgs {
     /// `--package`.
     #[command(flatten)]
     pub packages: PackageArgs,
+    /// A scene file: what stands in the world beside the robot, and what collides.
+    #[arg(long)]
+    pub scene: Option<PathBuf>,
+    /// The flat ground z = 0, where the scene has none of its own.
+    #[arg(long)]
+    pub ground: bool,
     /// JSON instead of tables.
     #[arg(long)]
     pub json: bool,

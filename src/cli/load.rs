@@ -1,6 +1,5 @@
 //! URDF text → model, with every finding on the way.
 
-use super::scene::SurfaceDefaults;
 use crate::contact::{Defaults, colliders};
 use crate::description::{self, Description, Finding, Severity, WORLD_ANCHOR};
 use crate::dynamics::singular_axes;
@@ -111,13 +110,13 @@ pub fn loaded(examined: Examined) -> Result<Loaded, String> {
 
 /// How a robot stands in the world.
 #[derive(Clone, Copy, Default)]
-pub struct Setup<'a> {
+pub struct Setup {
     /// How its root is held.
     pub base: Base,
     /// Root link of a fixed base in the world.
     pub base_pose: Pose,
     /// What its surfaces are like where its tags do not say.
-    pub surface: Option<&'a SurfaceDefaults>,
+    pub surface: Defaults,
 }
 
 /// Reads and checks a robot as far as it goes.
@@ -125,7 +124,7 @@ pub struct Setup<'a> {
 /// # Errors
 /// Why the file could not be read.
 pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, String> {
-    examine_with(source, Setup { base, base_pose, surface: None })
+    examine_with(source, Setup { base, base_pose, surface: Defaults::default() })
 }
 
 /// As [`examine`].
@@ -145,11 +144,8 @@ pub fn examine_text((file, text): (&str, &str), packages: &[(String, PathBuf)], 
     let reading = description::read(text, file);
     let meshes = Meshes::beside(Path::new(file), packages);
     let mut findings = reading.findings;
-    let robot = reading.description.and_then(|mut d| {
+    let robot = reading.description.and_then(|d| {
         let base = if is_static(&d) { Base::Fixed } else { setup.base };
-        if let Some(defaults) = setup.surface {
-            defaults.fill(&mut d);
-        }
         let (bodies, more) = link_bodies(&d, &meshes);
         findings.extend(more);
         findings.extend(not_honoured(ENGINE_NAMES[0], &d));
@@ -159,7 +155,7 @@ pub fn examine_text((file, text): (&str, &str), packages: &[(String, PathBuf)], 
         }
         let simulated: Vec<MassProperties> = bodies.iter().map(|body| body.simulated).collect();
         let mut model = Model::build(&d, &simulated, base, setup.base_pose);
-        findings.extend(colliders(&d, &mut model, &meshes, Defaults::default()));
+        findings.extend(colliders(&d, &mut model, &meshes, setup.surface));
         let singular = singular_axes(&model);
         findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
         let unsound = if singular.is_empty() { unsound_breaks(&d, &model) } else { vec![] };

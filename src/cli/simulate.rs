@@ -165,14 +165,14 @@ impl<'a> Plan<'a> {
 
     /// Where the energy (J) went; what is unaccounted for is the error of the integrator.
     fn ledger(&self, start: f64) -> serde_json::Value {
-        let (e, work, guarded) = (self.world.energy(), self.world.work(), self.world.stats().guarded_energy);
+        let (e, work, stats) = (self.world.energy(), self.world.work(), self.world.stats());
         let end = e.kinetic + e.potential;
         json!({
             "start": start,
             "end": end,
             "work_of_drives": work.drives,
             "losses": work.losses,
-            "unaccounted": end - start - work.drives + work.losses + guarded,
+            "unaccounted": end - start - work.drives + work.losses + stats.guarded_energy + stats.trimmed_energy,
         })
     }
 
@@ -198,6 +198,7 @@ impl<'a> Plan<'a> {
             "halvings": s.halvings,
             "guarded_pieces": s.guarded_pieces,
             "guarded_energy": s.guarded_energy,
+            "trimmed_energy": s.trimmed_energy,
             "energy": self.ledger(outcome.energy),
             "pole_steps": s.pole_steps,
             "broken_joints": broken,

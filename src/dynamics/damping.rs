@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn each_rate_leaves_the_same_share_after_a_step() {
-        for d in [0.0, 1e-9, 0.1, 0.9, 1.0 - 1e-12] {
+        for d in [0.0_f64, 1e-9, 0.1, 0.9, 1.0 - 1e-12] {
             for h in [1e-6_f64, 1e-3, 1e-2] {
                 let share = (1.0_f64 - d).powf(h);
                 let start = 1.0 - h * rate(d, (h, Scheme::Start));

@@ -99,13 +99,13 @@ impl Model {
             ..b.clone()
         }));
         self.dampings.extend(other.dampings.iter().map(|d| super::BodyDamping { body: by.on(d.body), ..*d }));
+        // What comes later has greater indices: the list stays ascending.
+        self.excluded_pairs.extend(other.excluded_pairs.iter().map(|pair| pair.map(|l| l + by.link)));
         self.colliders.extend(other.colliders.iter().map(|c| super::Collider {
             name: named(&c.name),
             link: c.link.map(|l| l + by.link),
             ..c.clone()
         }));
-        // Ascending as both are: the indices of the other are beyond all of these.
-        self.excluded_pairs.extend(other.excluded_pairs.iter().map(|pair| pair.map(|link| link + by.link)));
     }
 
     /// Root links of the first robot and of all that joined it, with how they are held.

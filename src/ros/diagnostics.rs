@@ -128,6 +128,7 @@ impl Diagnostics {
             pair("halvings", latest.stats.halvings),
             pair("guarded pieces", latest.stats.guarded_pieces),
             pair("guarded energy [J]", latest.stats.guarded_energy),
+            pair("trimmed energy [J]", latest.stats.trimmed_energy),
             pair("pole steps", latest.stats.pole_steps),
             pair("contacts", latest.contacts),
             pair("worst penetration [m]", latest.stats.worst_penetration),

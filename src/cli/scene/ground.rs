@@ -1,7 +1,7 @@
 //! The ground, and what surfaces are like where nothing says otherwise.
 
 use super::file::{Ground, SurfaceValues};
-use crate::description::{self, Description};
+use crate::contact::Defaults;
 use crate::math::{Pose, Quat, Vec3};
 use crate::model::{Collider, Surface};
 use crate::shape::ContactForm;
@@ -13,49 +13,24 @@ use serde_json::Value;
 const GROUND: &str = "ground";
 
 /// What surfaces are like where nothing says otherwise.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SurfaceDefaults(SurfaceValues);
+///
+/// # Errors
+/// Names the value that is out of range.
+pub(super) fn defaults(values: &SurfaceValues) -> Result<Defaults, String> {
+    check(values).map_err(|reason| format!("defaults: surface: {reason}"))?;
+    Ok(over(Defaults::default(), values))
+}
 
-impl SurfaceDefaults {
-    /// # Errors
-    /// Names the value that is out of range.
-    pub(super) fn new(values: &SurfaceValues) -> Result<Self, String> {
-        check(values).map_err(|reason| format!("defaults: surface: {reason}"))?;
-        Ok(Self(*values))
-    }
-
-    /// Fills in what the `<surface>` tags leave open.
-    pub fn fill(&self, d: &mut Description) {
-        let given = self.0;
-        for link in &mut d.links {
-            let open = || description::Surface {
-                at: link.at,
-                friction: None,
-                rolling_friction: None,
-                spinning_friction: None,
-                restitution: None,
-                margin: None,
-            };
-            let s = link.surface.get_or_insert_with(open);
-            s.friction = s.friction.or(given.friction);
-            s.rolling_friction = s.rolling_friction.or(given.rolling_friction);
-            s.spinning_friction = s.spinning_friction.or(given.spinning_friction);
-            s.restitution = s.restitution.or(given.restitution);
-            s.margin = s.margin.or(given.margin);
-        }
-    }
-
-    fn over(&self, own: &SurfaceValues) -> (Surface, f64) {
-        let (d, basic) = (self.0, Surface::default());
-        let pick = |own: Option<f64>, default: Option<f64>, basic: f64| own.or(default).unwrap_or(basic);
-        let surface = Surface {
-            friction: pick(own.friction, d.friction, basic.friction),
-            rolling: pick(own.rolling_friction, d.rolling_friction, basic.rolling),
-            spinning: pick(own.spinning_friction, d.spinning_friction, basic.spinning),
-            restitution: pick(own.restitution, d.restitution, basic.restitution),
-        };
-        (surface, pick(own.margin, d.margin, 0.0))
-    }
+/// What is given, the rest by default.
+fn over(defaults: Defaults, own: &SurfaceValues) -> Defaults {
+    let d = defaults.surface;
+    let surface = Surface {
+        friction: own.friction.unwrap_or(d.friction),
+        rolling: own.rolling_friction.unwrap_or(d.rolling),
+        spinning: own.spinning_friction.unwrap_or(d.spinning),
+        restitution: own.restitution.unwrap_or(d.restitution),
+    };
+    Defaults { surface, margin: own.margin.unwrap_or(defaults.margin) }
 }
 
 fn check(v: &SurfaceValues) -> Result<(), String> {
@@ -76,7 +51,7 @@ fn check(v: &SurfaceValues) -> Result<(), String> {
 }
 
 /// `ground:` true, false, or what it is like.
-pub(super) fn ground(value: &Value, defaults: &SurfaceDefaults) -> Result<Option<Collider>, String> {
+pub(super) fn ground(value: &Value, defaults: Defaults) -> Result<Option<Collider>, String> {
     match value {
         Value::Bool(false) => Ok(None),
         Value::Bool(true) | Value::Null => Ok(Some(flat(defaults))),
@@ -89,12 +64,12 @@ pub(super) fn ground(value: &Value, defaults: &SurfaceDefaults) -> Result<Option
 }
 
 /// z = 0, with the default surface.
-pub(super) fn flat(defaults: &SurfaceDefaults) -> Collider {
-    let (surface, margin) = defaults.over(&SurfaceValues::default());
+pub(super) fn flat(defaults: Defaults) -> Collider {
+    let Defaults { surface, margin } = defaults;
     Collider { name: GROUND.into(), link: None, pose: Pose::identity(), form: ContactForm::HalfSpace, surface, margin }
 }
 
-fn laid(g: &Ground, defaults: &SurfaceDefaults) -> Result<Collider, String> {
+fn laid(g: &Ground, defaults: Defaults) -> Result<Collider, String> {
     let own = SurfaceValues {
         friction: g.friction,
         rolling_friction: g.rolling_friction,
@@ -103,7 +78,7 @@ fn laid(g: &Ground, defaults: &SurfaceDefaults) -> Result<Collider, String> {
         margin: g.margin,
     };
     check(&own)?;
-    let (surface, margin) = defaults.over(&own);
+    let Defaults { surface, margin } = over(defaults, &own);
     let height = g.height.unwrap_or(0.0);
     let normal = g.normal.map_or(Vec3::z(), Vec3::from);
     if !(height.is_finite() && normal.norm().is_finite() && normal.norm() > 0.0) {

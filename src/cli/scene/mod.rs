@@ -6,13 +6,13 @@ mod file;
 mod ground;
 mod start;
 
+use crate::contact::Defaults;
 use crate::math::{Pose, Quat};
 use crate::model::{Base, Collider, EFFECT_NAMES};
 use crate::world::{Integrator, Settings};
 pub use assemble::{Assembly, Fault, Spare, Switch, assemble, switch_effect};
 use body::BodyEntry;
 use file::{Robot, SceneFile, WorldSettings};
-pub use ground::SurfaceDefaults;
 use ground::ground;
 use nalgebra::{Quaternion, Translation3};
 use serde_saphyr::Spanned;
@@ -37,7 +37,7 @@ pub struct Scene {
     pub ground: Option<Collider>,
     robots: Vec<RobotEntry>,
     bodies: Vec<BodyEntry>,
-    defaults: SurfaceDefaults,
+    defaults: Defaults,
     /// The file; empty without one.
     path: PathBuf,
 }
@@ -87,8 +87,8 @@ impl Scene {
         if let Some(name) = file.world.effects.keys().find(|name| !EFFECT_NAMES.contains(&name.as_str())) {
             return Err(format!("effect '{name}' does not exist; choose from: {}", EFFECT_NAMES.join(", ")));
         }
-        let defaults = SurfaceDefaults::new(&file.defaults.surface)?;
-        let ground = file.ground.map(|g| at_line(&g, "ground", ground(&g.value, &defaults))).transpose()?.flatten();
+        let defaults = ground::defaults(&file.defaults.surface)?;
+        let ground = file.ground.map(|g| at_line(&g, "ground", ground(&g.value, defaults))).transpose()?.flatten();
         let robots: Result<Vec<_>, String> =
             (file.robots.into_iter().enumerate()).map(|(i, r)| further(i, r, path)).collect();
         let bodies: Result<Vec<_>, String> = (file.bodies.into_iter().enumerate()).map(|(i, b)| entry(i, b)).collect();
@@ -100,7 +100,7 @@ impl Scene {
 
     /// The flat ground z = 0, if the scene has none of its own.
     pub fn lay_ground(&mut self) {
-        let defaults = &self.defaults;
+        let defaults = self.defaults;
         self.ground.get_or_insert_with(|| ground::flat(defaults));
     }
 
