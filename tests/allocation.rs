@@ -4,11 +4,14 @@
 mod support;
 
 use realnoid::cli::load::{Source, load};
+use realnoid::cli::scene::{Scene, Spare, assemble};
 use realnoid::model::Base;
 use realnoid::world::{AxisCommand, Integrator, Settings, World};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
 
 struct Counting;
 
@@ -68,6 +71,35 @@ fn a_thousand_steps_allocate_nothing() {
             assert_eq!(snapshot.stats.steps, 1000);
         }
     }
+}
+
+/// Contacts, damped bodies and snapshots of both allocate nothing once there have been as many contacts before.
+#[test]
+fn contacts_and_damped_bodies_allocate_nothing_once_warm() {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/config/leg_and_ball.yaml"));
+    let scene = Scene::read(Some(path)).unwrap();
+    let stand = (Base::Fixed, scene.robot.pose);
+    let all = assemble(&scene, Source::default(), stand, Spare::Nobody, &|m| scene.switch_effects(m));
+    let Ok(all) = all else { panic!("the scene cannot be loaded") };
+    assert!(all.model.effects.contact && all.model.effects.body_damping);
+    let mut world = World::new(Arc::new(all.model), scene.settings).unwrap();
+    world.set_initial_state(all.initial);
+    let mut snapshot = world.new_snapshot();
+    let mut run = |world: &mut World| {
+        let mut most = 0;
+        for _ in 0..600 {
+            world.advance();
+            world.write_snapshot(&mut snapshot);
+            most = most.max(snapshot.contacts.len());
+        }
+        most
+    };
+    assert!(run(&mut world) >= 1, "the ball lies on the ground");
+    world.reset();
+    let n = counted(|| {
+        run(&mut world);
+    });
+    assert_eq!(n, 0);
 }
 
 /// Soft joints, and joints that may break but hold, allocate nothing either; one that breaks does so once.

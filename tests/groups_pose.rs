@@ -118,7 +118,7 @@ fn a_moved_fixed_base_is_a_base_elsewhere() {
     (0..200).for_each(|_| w.advance());
     let mut there = start("3dof", Base::Fixed);
     let mut m = realnoid::model::Model::clone(there.model());
-    m.move_fixed_base(&base);
+    m.move_fixed_base(0, &base);
     let mut begin = START;
     begin[0].0 = -0.9;
     there = world(&m.into(), *w.settings(), &begin);

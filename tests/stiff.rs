@@ -3,7 +3,9 @@
 
 mod support;
 
+use realnoid::dynamics::{Kinematics, kinematics};
 use realnoid::engine::State;
+use realnoid::math::Vec3;
 use realnoid::model::{Effects, JointType, Model};
 use realnoid::world::{AxisCommand, Settings, World};
 use std::sync::Arc;
@@ -78,6 +80,37 @@ fn huge_torques() {
         assert!(w.state().q.iter().chain(&w.state().v).all(|x| x.is_finite()), "{h} {stops}");
         assert_eq!((w.stats().diverged_steps, w.stats().guarded_pieces > 0), (0, !stops), "{h} {stops}");
     }
+}
+
+/// The guard slows down what whirls; a body that flies beside it in the same world keeps its momentum, and so does the robot
+/// that whirls.
+#[test]
+fn the_guard_leaves_the_neighbours_alone() {
+    let mut joints = vec![JointType::Floating];
+    joints.extend([JointType::Revolute; 5]);
+    let mut m = tree(&joints, true, 9);
+    m.join(tree(&[JointType::Floating], true, 5), "other");
+    m.effects.gravity = false;
+    let mut w = world(&m, 0.001);
+    let mut s = State::initial(&m);
+    let slow = [0.1, -0.2, 0.05, 0.3, 0.1, -0.2];
+    let n = s.v.len();
+    s.v[n - 6..].copy_from_slice(&slow);
+    w.set_initial_state(s);
+    let momentum = |w: &World| {
+        let (mut k, s) = (Kinematics::new(&m), w.state());
+        kinematics(&m, &mut k, &s.q, &s.v);
+        let (i, b) = (m.bodies.len() - 1, &m.bodies[m.bodies.len() - 1]);
+        Vec3::from(k.r[i].mv(k.v[i] * b.mass + k.w[i].cross(b.mc)))
+    };
+    let before = momentum(&w);
+    w.set_commands(&[1e6, -1e6, 1e6, -1e6, 1e6].map(AxisCommand::torque)).unwrap();
+    for _ in 0..200 {
+        w.advance();
+    }
+    assert!(w.stats().guarded_pieces > 0 && w.stats().diverged_steps == 0, "{:?}", w.stats());
+    // The rule errs by (h ω)² per radian: 10⁻⁸ here.
+    assert!((momentum(&w) - before).norm() <= 1e-6 * before.norm(), "{before} {}", momentum(&w));
 }
 
 /// Inertias of 1e8 : 1 in one chain, either way round.

@@ -32,6 +32,9 @@ pub enum Command {
     Check {
         /// URDF file; the embedded humanoid if none is given.
         urdf: Option<PathBuf>,
+        /// A scene file, checked with the robot in it.
+        #[arg(long)]
+        scene: Option<PathBuf>,
         /// `--package`.
         #[command(flatten)]
         packages: PackageArgs,
@@ -83,6 +86,12 @@ pub struct InspectArgs {
     /// `--package`.
     #[command(flatten)]
     pub packages: PackageArgs,
+    /// A scene file: what stands in the world beside the robot, and what collides.
+    #[arg(long)]
+    pub scene: Option<PathBuf>,
+    /// The flat ground z = 0, where the scene has none of its own.
+    #[arg(long)]
+    pub ground: bool,
     /// JSON instead of tables.
     #[arg(long)]
     pub json: bool,
@@ -141,14 +150,18 @@ pub struct EvaluateArgs {
 /// `simulate`: the fixed contract of DESIGN §1.
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
-    /// URDF file.
-    pub urdf: PathBuf,
+    /// URDF file; without one, that of the scene.
+    #[arg(required_unless_present = "scene")]
+    pub urdf: Option<PathBuf>,
     /// `--package`.
     #[command(flatten)]
     pub packages: PackageArgs,
-    /// World settings (YAML); flags win over it.
+    /// World settings, robots, bodies and the ground (YAML); flags win over it.
     #[arg(long)]
     pub scene: Option<PathBuf>,
+    /// The flat ground z = 0, where the scene has none of its own.
+    #[arg(long)]
+    pub ground: bool,
     /// Simulated time, s; rounded to whole control intervals.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub duration: f64,
@@ -204,7 +217,8 @@ pub struct SimulateArgs {
     /// Time between two rows, s: a whole multiple of the control interval, which it is if not given.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub every: Option<f64>,
-    /// Switch an effect off: gravity, damping, friction, limits, drives, rotor_inertia, compliance, mimic, breaking.
+    /// Switch an effect off: gravity, damping, friction, limits, drives, rotor_inertia, compliance, mimic, breaking,
+    /// body_damping, contact, deactivation.
     #[arg(long, value_name = "EFFECT")]
     pub off: Vec<String>,
     /// Switch an effect on.
@@ -217,6 +231,10 @@ pub struct SimulateArgs {
     /// folder with other things FILE.mcap stands for itself. An earlier run of the same name is replaced.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Where the contacts go: a row per contact, as often as `--every` says, with time, the two names, point (m), normal from
+    /// the first to the second, depth (m) and force on the second (N, averaged over the last step), in the world frame.
+    #[arg(long, value_name = "FILE.csv")]
+    pub contacts: Option<PathBuf>,
 }
 
 /// `N` numbers separated by commas.

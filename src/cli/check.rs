@@ -1,6 +1,7 @@
 //! `realnoid check`: every finding with its line and mend.
 
 use super::load::{Source, examine};
+use super::scene::{Fault, Scene, Spare, assemble};
 use crate::description::render;
 use crate::math::Pose;
 use crate::model::Base;
@@ -9,19 +10,44 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// Prints every finding in the robot's text to standard output; failure if one of them is an
-/// error, or if the file cannot be read.
-pub fn run(source: Source) -> ExitCode {
+/// error, or if the file cannot be read; then what is wrong with the scene, if one is given.
+pub fn run(source: Source, scene: Option<&Path>) -> ExitCode {
+    let scene = match scene.map(|path| Scene::read(Some(path))).transpose() {
+        Ok(scene) => scene,
+        Err(reason) => {
+            eprintln!("error: {reason}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let urdf = source.urdf.or(scene.as_ref().and_then(|s| s.robot.urdf.as_deref()));
+    let source = Source { urdf, ..source };
     match examine(source, Base::Fixed, Pose::identity()) {
         Ok(examined) => {
             let mut out = std::io::stdout();
             let report = render(&examined.findings, &examined.file, &examined.text, out.is_terminal());
             // A reader that has gone away (`| head`) is no failure of the check.
             let _ = out.write_all(report.as_bytes());
-            if examined.is_sound() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+            let sound = examined.is_sound() && scene.as_ref().is_none_or(|scene| is_sound(scene, source));
+            if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE }
         }
         Err(message) => {
             eprintln!("realnoid check: {message}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+/// Says what is wrong with a scene around a sound robot, or odd about it.
+fn is_sound(scene: &Scene, source: Source) -> bool {
+    let stand = (scene.base.unwrap_or_default(), scene.robot.pose);
+    match assemble(scene, source, stand, Spare::Humanoid, &|m| scene.switch_effects(m)) {
+        Ok(all) => {
+            all.warnings.iter().for_each(|w| eprintln!("warning: {w}"));
+            true
+        }
+        Err(Fault::Scene(reason) | Fault::Robot(reason)) => {
+            eprintln!("error: {}", reason.trim_end());
+            false
         }
     }
 }

@@ -93,7 +93,14 @@ pub fn load_or_say(source: Source, base: Base) -> Result<Loaded, ExitCode> {
 /// # Errors
 /// As [`load`].
 pub fn load_at(source: Source, base: Base, base_pose: Pose) -> Result<Loaded, String> {
-    let examined = examine(source, base, base_pose)?;
+    loaded(examine(source, base, base_pose)?)
+}
+
+/// What was examined, if it is sound.
+///
+/// # Errors
+/// The printable report.
+pub fn loaded(examined: Examined) -> Result<Loaded, String> {
     let report = || examined.report(Severity::Warning, false);
     let Some((description, bodies, model)) = examined.robot else { return Err(report()) };
     let published = with_inertials(&examined.text, &properties(&bodies), &description);
@@ -101,19 +108,44 @@ pub fn load_at(source: Source, base: Base, base_pose: Pose) -> Result<Loaded, St
     Ok(Loaded { description, bodies, meshes, model: Arc::new(model), findings, published })
 }
 
+/// How a robot stands in the world.
+#[derive(Clone, Copy, Default)]
+pub struct Setup {
+    /// How its root is held.
+    pub base: Base,
+    /// Root link of a fixed base in the world.
+    pub base_pose: Pose,
+    /// What its surfaces are like where its tags do not say.
+    pub surface: Defaults,
+}
+
 /// Reads and checks a robot as far as it goes.
 ///
 /// # Errors
 /// Why the file could not be read.
 pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, String> {
+    examine_with(source, Setup { base, base_pose, surface: Defaults::default() })
+}
+
+/// As [`examine`].
+///
+/// # Errors
+/// As [`examine`].
+pub fn examine_with(source: Source, setup: Setup) -> Result<Examined, String> {
     let (file, text) = match source.urdf {
         Some(path) => (path.display().to_string(), super::check::read_text(path)?),
         None => (EMBEDDED_NAME.to_owned(), EMBEDDED.to_owned()),
     };
-    let reading = description::read(&text, &file);
-    let meshes = Meshes::beside(Path::new(&file), source.packages);
+    Ok(examine_text((&file, &text), source.packages, setup))
+}
+
+/// Checks the text of a robot as far as it goes; mesh files are looked for beside `file`.
+pub fn examine_text((file, text): (&str, &str), packages: &[(String, PathBuf)], setup: Setup) -> Examined {
+    let reading = description::read(text, file);
+    let meshes = Meshes::beside(Path::new(file), packages);
     let mut findings = reading.findings;
     let robot = reading.description.and_then(|d| {
+        let base = if is_static(&d) { Base::Fixed } else { setup.base };
         let (bodies, more) = link_bodies(&d, &meshes);
         findings.extend(more);
         findings.extend(not_honoured(ENGINE_NAMES[0], &d));
@@ -122,8 +154,8 @@ pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, 
             return None;
         }
         let simulated: Vec<MassProperties> = bodies.iter().map(|body| body.simulated).collect();
-        let mut model = Model::build(&d, &simulated, base, base_pose);
-        findings.extend(colliders(&d, &mut model, &meshes, Defaults::default()));
+        let mut model = Model::build(&d, &simulated, base, setup.base_pose);
+        findings.extend(colliders(&d, &mut model, &meshes, setup.surface));
         let singular = singular_axes(&model);
         findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
         let unsound = if singular.is_empty() { unsound_breaks(&d, &model) } else { vec![] };
@@ -131,7 +163,14 @@ pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, 
         findings.extend(unsound);
         sound.then_some((d, bodies, model))
     });
-    Ok(Examined { file, text, findings, robot, meshes })
+    Examined { file: file.to_owned(), text: text.to_owned(), findings, robot, meshes }
+}
+
+/// B-2: a root of specific gravity 0 stands still, whatever holds it.
+fn is_static(d: &Description) -> bool {
+    let is_root = |link: &&description::Link| !d.joints.iter().any(|joint| joint.child == link.name);
+    let root = d.links.iter().find(is_root).and_then(|link| link.body.as_ref());
+    root.is_some_and(|body| body.substance.specific_gravity == 0.0)
 }
 
 fn properties(bodies: &[LinkBody]) -> Vec<MassProperties> {

@@ -8,6 +8,7 @@ pub mod drawing;
 pub mod evaluate;
 pub mod inspect;
 pub mod load;
+mod outcome;
 pub mod run;
 pub mod scene;
 pub mod script;
@@ -24,7 +25,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse_from(own);
     match cli.command.unwrap_or(Command::Run { urdf: None, packages: Default::default() }) {
         Command::Run { urdf, packages } => run::start(packages.source(urdf.as_deref()), ros),
-        Command::Check { urdf, packages } => check::run(packages.source(urdf.as_deref())),
+        Command::Check { urdf, scene, packages } => check::run(packages.source(urdf.as_deref()), scene.as_deref()),
         Command::Inspect(args) => inspect::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Bench(args) => bench::run(&args),

@@ -1,11 +1,14 @@
 //! `realnoid run`: the ROS 2 node.
 
-use super::load::{Loaded, Source, load};
+use super::load::{Loaded, Source};
+use super::scene::{Assembly, Fault, Scene, Spare, assemble};
 use crate::description::{NOT_SIMULATED, Severity, render};
+use crate::ros::parameters::Values;
 use crate::ros::{self, Environment, Robot, RosArgs};
 use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Exit code for a command line, parameter file or environment that makes no sense.
 const USAGE: u8 = 2;
@@ -25,25 +28,40 @@ pub fn run(source: Source, args: RosArgs) -> ExitCode {
         Ok(checked) => checked,
         Err(reason) => return fail(&reason, USAGE),
     };
-    let loaded = match load(source, values.base()) {
-        Ok(loaded) => loaded,
-        Err(report) => {
+    let (assembly, values) = match assembly(source, values) {
+        Ok(both) => both,
+        Err(Fault::Scene(reason)) => return fail(&reason, USAGE),
+        Err(Fault::Robot(report)) => {
             eprintln!("{}", report.trim_end());
             return ExitCode::FAILURE;
         }
     };
-    warnings.iter().for_each(|w| eprintln!("warning: {w}"));
-    print_findings(&loaded);
+    let loaded = &assembly.first;
+    warnings.iter().chain(&assembly.warnings).for_each(|w| eprintln!("warning: {w}"));
+    print_findings(loaded);
     let robot = Robot {
         source: loaded.description.file.to_string(),
         urdf: loaded.published.as_str().into(),
-        model: loaded.model.clone(),
+        model: Arc::new(assembly.model),
+        initial: assembly.initial,
         pending: loaded.findings.iter().filter(|f| f.code == NOT_SIMULATED).map(|f| f.message.clone()).collect(),
     };
     match ros::run(&robot, &args, values, &environment) {
         Ok(()) => ExitCode::SUCCESS,
         Err(reason) => fail(&reason, 1),
     }
+}
+
+/// The robot and all that the scene puts beside it; the settings of the scene, where no parameter says otherwise.
+fn assembly(source: Source, mut values: Values) -> Result<(Assembly, Values), Fault> {
+    let mut scene = Scene::read(values.scene()).map_err(Fault::Scene)?;
+    values.adopt(&scene.settings, &scene.given).map_err(Fault::Scene)?;
+    if values.ground() {
+        scene.lay_ground();
+    }
+    let base = scene.base.filter(|_| !values.is_given("base")).unwrap_or(values.base());
+    let assembly = assemble(&scene, source, (base, scene.robot.pose), Spare::Humanoid, &|m| scene.switch_effects(m))?;
+    Ok((assembly, values))
 }
 
 fn fail(reason: &str, code: u8) -> ExitCode {

@@ -2,22 +2,25 @@
 
 use super::args::{SimulateArgs, assignment, numbers};
 use super::commands::{self, axis};
-use super::load::{Loaded, load_at};
-use super::scene::{Scene, integrator, interval_ns, pose};
+use super::load::Loaded;
+use super::outcome::{Outcome, Peak, Progress, counted};
+use super::scene::{
+    Assembly, Fault, Scene, Spare, assemble, couple, integrator, interval_ns, outside, pose, switch_effect,
+};
 use super::script::Script;
 use crate::description::Severity;
 use crate::engine::{ENGINE_NAMES, State};
 use crate::math::{Pose, Vec3};
-use crate::model::{Base, EFFECT_NAMES, Model};
-use crate::record::{Format, RecordError, Recorder, Sample};
-use crate::world::{Settings, Stats, World};
+use crate::model::{Base, Model};
+use crate::record::{ContactWriter, Format, Recorder, Sample};
+use crate::world::{ContactPoint, Settings, World};
 use serde_json::json;
-use std::io::{IsTerminal, Write};
+use std::fs::File;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 /// Set by SIGINT and SIGTERM: the run ends early, its file is completed.
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -46,73 +49,21 @@ pub fn run(args: &SimulateArgs) -> ExitCode {
     }
 }
 
-/// What became of a run.
-#[derive(Default)]
-struct Outcome {
-    /// CPU time of the steps, s.
-    cpu: f64,
-    /// Energy at the start, J.
-    energy: f64,
-    rows: u64,
-    /// Every value looked at was finite.
-    finite: bool,
-    /// By a signal.
-    stopped: bool,
-    files: Vec<PathBuf>,
-    /// Per axis.
-    peaks: Vec<Peak>,
+/// The files of a run.
+struct Records {
+    recorder: Option<Recorder>,
+    contacts: Option<ContactWriter<File>>,
 }
 
-/// Greatest magnitudes at the ends of the control intervals (J-15, J-16).
-#[derive(Clone, Copy, Default)]
-struct Peak {
-    /// N·m or N, really applied.
-    torque: f64,
-    /// rad/s or m/s.
-    speed: f64,
-}
-
-impl Outcome {
-    fn note_peaks(&mut self, world: &World) {
-        for (axis, peak) in self.peaks.iter_mut().enumerate() {
-            peak.torque = peak.torque.max(world.efforts()[axis].abs());
-            peak.speed = peak.speed.max(world.state().axis(world.model(), axis).1.abs());
+impl Records {
+    /// True if a row was written.
+    fn write(&mut self, sample: &Sample, contacts: &[ContactPoint]) -> Result<bool, String> {
+        if let Some(writer) = &mut self.contacts {
+            writer.rows(&sample.snapshot, contacts).map_err(|cause| format!("--contacts: cannot write: {cause}"))?;
         }
-    }
-
-    fn peaks(&self, m: &Model) -> serde_json::Map<String, serde_json::Value> {
-        let told = |(axis, peak): (&crate::model::Axis, &Peak)| {
-            (axis.name.clone(), json!({"torque": peak.torque, "speed": peak.speed}))
-        };
-        m.axes.iter().zip(&self.peaks).map(told).collect()
-    }
-}
-
-/// A line on standard error that tells how far a long run is, if people see it.
-struct Progress {
-    /// When it is written next; never if nobody sees it.
-    next: Option<Instant>,
-    shown: bool,
-}
-
-impl Progress {
-    const PAUSE: Duration = Duration::from_millis(500);
-
-    fn new() -> Self {
-        Self { next: std::io::stderr().is_terminal().then(|| Instant::now() + Self::PAUSE), shown: false }
-    }
-
-    fn show(&mut self, done: u64, all: u64) {
-        if self.next.is_some_and(|next| Instant::now() >= next) {
-            let _ = write!(std::io::stderr(), "\r{:3.0} % of the duration", 100.0 * done as f64 / all as f64);
-            (self.next, self.shown) = (Some(Instant::now() + Self::PAUSE), true);
-        }
-    }
-
-    fn clear(&self) {
-        if self.shown {
-            let _ = write!(std::io::stderr(), "\r{:30}\r", "");
-        }
+        let Some(recorder) = &mut self.recorder else { return Ok(false) };
+        recorder.write(sample).map_err(|e| e.to_string())?;
+        Ok(true)
     }
 }
 
@@ -131,14 +82,17 @@ impl<'a> Plan<'a> {
     fn new(args: &'a SimulateArgs) -> Result<Self, (u8, String)> {
         let usage = |reason| (2, reason);
         args.out.as_deref().map(Format::of).transpose().map_err(|e| usage(format!("--out {e}")))?;
-        let scene = Scene::read(args.scene.as_deref()).map_err(usage)?;
+        let mut scene = Scene::read(args.scene.as_deref()).map_err(usage)?;
+        if args.ground {
+            scene.lay_ground();
+        }
         let settings = settings(args, &scene).map_err(usage)?;
-        let base = base(args, &scene);
-        let pose = base_pose(args, &scene).map_err(usage)?;
-        let loaded = load_at(args.packages.source(Some(&args.urdf)), base, pose).map_err(|reason| (1, reason))?;
-        let mut model = Model::clone(&loaded.model);
-        switch_effects(args, &scene, &mut model).map_err(usage)?;
-        let initial = initial_state(args, &model, pose).map_err(usage)?;
+        let stand = (base(args, &scene), base_pose(args, &scene).map_err(usage)?);
+        let (source, switch) =
+            (args.packages.source(args.urdf.as_deref()), |m: &mut Model| switch_effects(args, &scene, m));
+        let assembly = assemble(&scene, source, stand, Spare::Nobody, &switch).map_err(code)?;
+        let Assembly { first: loaded, model, mut initial, warnings: about_others } = assembly;
+        override_start(args, &model, &mut initial).map_err(usage)?;
         let mut world = World::new(Arc::new(model), settings).map_err(usage)?;
         world.set_initial_state(initial);
         commands::turn(args, &mut world).map_err(usage)?;
@@ -147,7 +101,7 @@ impl<'a> Plan<'a> {
         let read = |path| Script::read(path, &world, &loaded.description, (interval(&settings), intervals));
         let script = args.script.as_deref().map(read).transpose().map_err(usage)?.unwrap_or_default();
         let mut warnings = warnings(&loaded);
-        warnings.extend(scene.pending);
+        warnings.extend(about_others);
         warnings.extend(outside(world.model(), world.state()).map(|(_, said)| said + ": its stop pushes it back"));
         warnings.extend(beyond(&world));
         if intervals == 0 && args.duration > 0.0 {
@@ -159,24 +113,28 @@ impl<'a> Plan<'a> {
 
     fn run(&mut self) -> Result<serde_json::Value, String> {
         let open = |path: &PathBuf| Recorder::create(path, self.world.model());
-        let mut recorder = self.args.out.as_ref().map(open).transpose().map_err(|e| e.to_string())?;
+        let recorder = self.args.out.as_ref().map(open).transpose().map_err(|e| e.to_string())?;
+        let touches = |path| ContactWriter::new(File::create(path)?, self.world.model());
+        let told = |cause: io::Error| format!("--contacts: cannot write the file: {cause}");
+        let contacts = self.args.contacts.as_ref().map(touches).transpose().map_err(told)?;
+        let mut records = Records { recorder, contacts };
         // Without the handler the run only loses its neat end.
         let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
         let mut progress = Progress::new();
-        let outcome = self.simulate(recorder.as_mut(), &mut progress);
+        let outcome = self.simulate(&mut records, &mut progress);
         progress.clear();
-        let mut outcome = outcome.map_err(|e| e.to_string())?;
-        if let Some(recorder) = recorder {
+        let mut outcome = outcome?;
+        if let Some(recorder) = records.recorder {
             outcome.files = recorder.finish().map_err(|e| e.to_string())?;
+        }
+        if let Some(contacts) = records.contacts {
+            contacts.finish().map_err(told)?;
+            outcome.files.extend(self.args.contacts.clone());
         }
         Ok(self.summary(&outcome))
     }
 
-    fn simulate(
-        &mut self,
-        mut recorder: Option<&mut Recorder>,
-        progress: &mut Progress,
-    ) -> Result<Outcome, RecordError> {
+    fn simulate(&mut self, records: &mut Records, progress: &mut Progress) -> Result<Outcome, String> {
         let peaks = vec![Peak::default(); self.world.model().axes.len()];
         let e = self.world.energy();
         let mut outcome = Outcome { finite: true, energy: e.kinetic + e.potential, peaks, ..Outcome::default() };
@@ -189,9 +147,8 @@ impl<'a> Plan<'a> {
                 sample.take(&self.world);
                 outcome.finite &= sample.is_finite();
             }
-            if let Some(recorder) = recorder.as_mut().filter(|_| row) {
-                recorder.write(&sample)?;
-                outcome.rows += 1;
+            if row {
+                outcome.rows += u64::from(records.write(&sample, self.world.contacts())?);
             }
             if last {
                 break;
@@ -208,14 +165,14 @@ impl<'a> Plan<'a> {
 
     /// Where the energy (J) went; what is unaccounted for is the error of the integrator.
     fn ledger(&self, start: f64) -> serde_json::Value {
-        let (e, work, guarded) = (self.world.energy(), self.world.work(), self.world.stats().guarded_energy);
+        let (e, work, stats) = (self.world.energy(), self.world.work(), self.world.stats());
         let end = e.kinetic + e.potential;
         json!({
             "start": start,
             "end": end,
             "work_of_drives": work.drives,
             "losses": work.losses,
-            "unaccounted": end - start - work.drives + work.losses + guarded,
+            "unaccounted": end - start - work.drives + work.losses + stats.guarded_energy + stats.trimmed_energy,
         })
     }
 
@@ -230,7 +187,8 @@ impl<'a> Plan<'a> {
             "simulated_seconds": self.simulated(),
             "cpu_seconds": cpu,
             "us_per_step": if s.steps > 0 { cpu * 1e6 / s.steps as f64 } else { 0.0 },
-            "worst_penetration": 0.0,
+            "worst_penetration": s.worst_penetration,
+            "contacts": self.world.contacts().len(),
             "worst_stop_violation": s.worst_stop_violation,
             "peaks": outcome.peaks(self.world.model()),
             "finite": outcome.finite,
@@ -240,6 +198,7 @@ impl<'a> Plan<'a> {
             "halvings": s.halvings,
             "guarded_pieces": s.guarded_pieces,
             "guarded_energy": s.guarded_energy,
+            "trimmed_energy": s.trimmed_energy,
             "energy": self.ledger(outcome.energy),
             "pole_steps": s.pole_steps,
             "broken_joints": broken,
@@ -276,29 +235,6 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// What is counted in a run, and what it means.
-fn counted(s: &Stats) -> [(u64, &'static str); 6] {
-    [
-        (
-            s.fallback_steps,
-            "steps were made by implicit_midpoint, because an axis began or ceased to stand still, a servo was on its \
-             way, a viscous term was stiff, or a joint is soft or a fixed one that may break",
-        ),
-        (
-            s.halvings,
-            "times a step was halved, because limbs turned too fast for its iteration: a finer step costs the same",
-        ),
-        (s.unsettled_steps, "steps ended before the axis laws had settled: allow more --iterations"),
-        (
-            s.guarded_pieces,
-            "pieces of steps were not resolved by the shortest piece there is: the motion of the limbs was slowed down \
-             to the energy that drives and weight had paid for (guarded_energy, J); take a finer step",
-        ),
-        (s.pole_steps, "steps had a 3dof group at its pole: torques about its angles were bounded there"),
-        (s.diverged_steps, "step would have given values that are not finite: the world stood still from there on"),
-    ]
-}
-
 fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {
     let mut s = scene.settings;
     if let Some(t) = args.control_interval {
@@ -325,15 +261,13 @@ fn base(args: &SimulateArgs, scene: &Scene) -> Base {
 }
 
 fn base_pose(args: &SimulateArgs, scene: &Scene) -> Result<Pose, String> {
-    let Some(text) = &args.base_pose else { return Ok(scene.pose) };
+    let Some(text) = &args.base_pose else { return Ok(scene.robot.pose) };
     let form = "X,Y,Z,QX,QY,QZ,QW";
     pose(numbers("--base-pose", form, text)?).map_err(|reason| format!("--base-pose {text}: {reason}"))
 }
 
 fn switch_effects(args: &SimulateArgs, scene: &Scene, model: &mut Model) -> Result<(), String> {
-    for (name, on) in &scene.effects {
-        switch_effect(model, name, *on)?;
-    }
+    scene.switch_effects(model)?;
     if let Some(both) = args.off.iter().find(|name| args.on.contains(name)) {
         return Err(format!("--off {both} and --on {both} contradict each other; leave one of them out"));
     }
@@ -345,15 +279,8 @@ fn switch_effects(args: &SimulateArgs, scene: &Scene, model: &mut Model) -> Resu
     Ok(())
 }
 
-fn switch_effect(model: &mut Model, name: &str, on: bool) -> Result<(), String> {
-    let known = || format!("effect '{name}' does not exist; choose one of: {}", EFFECT_NAMES.join(", "));
-    if model.effects.switch(name, on) { Ok(()) } else { Err(known()) }
-}
-
-fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, String> {
-    let mut s = State::initial(m);
-    let (p, q) = (pose.translation, pose.rotation.coords);
-    s.set_base_pose(m, [p.x, p.y, p.z], [q.x, q.y, q.z, q.w]);
+/// What the flags say of the start, over what the scene says.
+fn override_start(args: &SimulateArgs, m: &Model, s: &mut State) -> Result<(), String> {
     if let Some(text) = &args.base_twist {
         if m.base == Base::Fixed {
             return Err("--base-twist needs --base free".into());
@@ -376,12 +303,14 @@ fn initial_state(args: &SimulateArgs, m: &Model, pose: Pose) -> Result<State, St
         }
         given.push(axis);
     }
-    s.couple_given(m, &given).map_err(|reason| format!("--set: {reason}"))?;
-    let coupled = |axis: usize| m.couplings_in_force().iter().any(|c| c.leader == axis || c.follower == axis);
-    let refused = outside(m, &s).find(|(axis, _)| coupled(*axis));
-    match refused {
-        Some((_, said)) => Err(format!("--set: {said}; it is coupled to another axis, so it must start inside")),
-        None => Ok(s),
+    couple(m, s, &given).map_err(|reason| format!("--set: {reason}"))
+}
+
+/// Exit code and reason.
+fn code(fault: Fault) -> (u8, String) {
+    match fault {
+        Fault::Robot(report) => (1, report),
+        Fault::Scene(reason) => (2, reason),
     }
 }
 
@@ -408,16 +337,6 @@ fn schedule(args: &SimulateArgs, s: &Settings) -> Result<(u64, u64), String> {
         return Err(format!("--every {every}: must be a whole multiple of the control interval{scaled}, {interval} s"));
     }
     Ok(((args.duration / interval).round() as u64, ratio.round() as u64))
-}
-
-/// Axes that start outside their range.
-fn outside<'a>(m: &'a Model, s: &'a State) -> impl Iterator<Item = (usize, String)> + 'a {
-    m.axes.iter().enumerate().filter(|_| m.effects.limits).filter_map(|(i, a)| {
-        let (q, _) = s.axis(m, i);
-        let slack = 1e-12 * (1.0 + q.abs());
-        (q < a.lower - slack || q > a.upper + slack)
-            .then(|| (i, format!("axis '{}' starts at {q}, outside its range {} to {}", a.name, a.lower, a.upper)))
-    })
 }
 
 /// What the axes cannot do of their commands.

@@ -29,7 +29,6 @@ const fn attribute(tag: &'static str, attribute: &'static str, instead: &'static
 pub(super) const PENDING: &[Pending] = &[
     tag("proxy", "there is no contact yet"),
     tag("surface", "there is no contact yet"),
-    tag("damping", "bodies are not damped"),
     tag("deactivate", "bodies stay active"),
     attribute("chain", "self_collision", "there is no contact inside a chain yet"),
 ];

@@ -8,6 +8,7 @@ use super::DofIn;
 use super::articulated::{Acc, Art, Spatial};
 use super::ball::{Ball, BallIn, eliminate_ball, eliminate_floating};
 use super::crba::Composite;
+use super::damping::{Damped, resist};
 use super::eliminate::{eliminate_axis, eliminate_linear_z, revolute, revolute_root};
 use super::joint::{bias, joint_transform, joint_velocity, turned_z, universal_axis};
 use crate::math::{Fma, M3, Real, V3};
@@ -48,6 +49,13 @@ pub struct Workspace<T> {
     pub ball_in: Vec<BallIn<T>>,
     /// Torque that keeps a locked velocity coordinate to its acceleration (filled by [`aba_hybrid`]).
     pub reaction: Vec<T>,
+    /// Bodies that the hybrid dynamics damp.
+    pub(crate) damped: Vec<Damped<T>>,
+    /// Per body, if any is damped: room for [`super::damping_powers`].
+    pub(crate) wrenches: Vec<Spatial<T>>,
+    /// The bodies that take part, first and one past the last, ascending: whole trees. The accelerations of the others stay
+    /// as they are.
+    pub active: Vec<(usize, usize)>,
 }
 
 impl<T: Real> Workspace<T> {
@@ -64,6 +72,9 @@ impl<T: Real> Workspace<T> {
             dofs: vec![DofIn::free(o); nv],
             ball_in: vec![BallIn::default(); model.balls],
             reaction: vec![o; nv],
+            damped: Vec::with_capacity(model.dampings.len()),
+            wrenches: vec![Spatial::default(); if model.dampings.is_empty() { 0 } else { n }],
+            active: vec![(1, n)],
         }
     }
 
@@ -153,17 +164,26 @@ fn kernel<T: Real, const HYBRID: bool>(
     qdd: &mut [T],
 ) {
     ws.kin[0] = Kin { r: M3::identity(), ..Kin::default() };
-    for (i, b) in m.bodies.iter().enumerate().skip(1) {
-        let kin = moved(b, q, v, &ws.kin[b.parent]);
-        ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
-        ws.kin[i] = kin;
-    }
-    for i in (1..m.bodies.len()).rev() {
-        inward::<T, HYBRID>(m, ws, i, (q, v), tau);
+    for k in 0..ws.active.len() {
+        let (from, to) = ws.active[k];
+        for (i, b) in m.bodies.iter().enumerate().take(to).skip(from) {
+            let kin = moved(b, q, v, &ws.kin[b.parent]);
+            ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
+            ws.kin[i] = kin;
+        }
+        if HYBRID && !ws.damped.is_empty() {
+            resist(m, ws, from..to);
+        }
+        for i in (from..to).rev() {
+            inward::<T, HYBRID>(m, ws, i, (q, v), tau);
+        }
     }
     ws.start(gravity);
-    for i in 1..m.bodies.len() {
-        outward::<T, HYBRID>(m, ws, i, (q, v), qdd);
+    for k in 0..ws.active.len() {
+        let (from, to) = ws.active[k];
+        for i in from..to {
+            outward::<T, HYBRID>(m, ws, i, (q, v), qdd);
+        }
     }
 }
 

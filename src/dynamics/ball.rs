@@ -74,22 +74,17 @@ impl<T: Real> Ball<T> {
         t.dot(self.inverse.mv(t))
     }
 
-    /// Takes a further torque into `x` and what is left over.
-    pub fn add(&mut self, t: V3<T>) {
+    /// Takes a further torque into `x` and what is left over, and a further [`Ball::reach`].
+    pub fn add(&mut self, t: V3<T>, reach: V3<T>) {
         self.left += t;
         self.load += t;
+        self.load -= reach;
         self.x += self.p.mv(t);
     }
 
-    /// The change of ω̇ when the frame it moves against accelerates by `a` more.
-    pub fn follow(&mut self, a: Spatial<T>) -> V3<T> {
-        let reach = self.reach(a);
-        self.load -= reach;
-        -self.p.mv(reach)
-    }
-
+    /// What the acceleration of the frame it moves against does to the load of the joint.
     #[inline(always)]
-    fn reach(&self, a: Spatial<T>) -> V3<T> {
+    pub fn reach(&self, a: Spatial<T>) -> V3<T> {
         self.ua.mv(a.a) + self.ul.mv(a.l)
     }
 }

@@ -26,16 +26,23 @@ pub struct Momentum {
 
 /// Energy of the moving bodies under gravity (m/s², world).
 pub fn energy(m: &Model, k: &Kinematics, gravity: [f64; 3]) -> Energy {
+    let add = |sum: Energy, body| {
+        let e = body_energy(m, k, gravity, body);
+        Energy { kinetic: sum.kinetic + e.kinetic, potential: sum.potential + e.potential }
+    };
+    (1..m.bodies.len()).fold(Energy::default(), add)
+}
+
+/// Energy of one body.
+pub fn body_energy(m: &Model, k: &Kinematics, gravity: [f64; 3], body: usize) -> Energy {
+    let (b, w, v) = (&m.bodies[body], k.w[body], k.v[body]);
+    let linear = v * b.mass + w.cross(b.mc);
+    let angular = S3::mv(&b.inertia, w) + b.mc.cross(v);
     let g = V3::new(gravity[0], gravity[1], gravity[2]);
-    let mut e = Energy::default();
-    for (i, b) in m.bodies.iter().enumerate().skip(1) {
-        let (w, v) = (k.w[i], k.v[i]);
-        let linear = v * b.mass + w.cross(b.mc);
-        let angular = S3::mv(&b.inertia, w) + b.mc.cross(v);
-        e.kinetic += 0.5 * (w.dot(angular) + v.dot(linear));
-        e.potential -= g.dot(k.r[i].mv(b.mc) + k.p[i] * b.mass);
+    Energy {
+        kinetic: 0.5 * (w.dot(angular) + v.dot(linear)),
+        potential: -g.dot(k.r[body].mv(b.mc) + k.p[body] * b.mass),
     }
-    e
 }
 
 /// Momentum of the moving bodies.

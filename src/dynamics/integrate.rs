@@ -88,6 +88,9 @@ fn floating_step(q: &mut [f64], v: &mut [f64], vdot: &[f64], h: f64) {
 /// Turns a unit quaternion `q` (w, x, y, z) by the rotation vector `a` (rad, child frame).
 pub fn turn(q: &mut [f64], a: V3<f64>) {
     let angle = a.dot(a).sqrt();
+    if angle == 0.0 {
+        return;
+    }
     let (s, c) = sin_cos(0.5 * angle);
     let k = if angle > 1e-8 { s / angle } else { 0.5 - angle * angle / 48.0 };
     let (x, y, z) = (a.x * k, a.y * k, a.z * k);

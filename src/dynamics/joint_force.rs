@@ -22,8 +22,8 @@ pub struct JointForces {
     after: Vec<V3<f64>>,
     /// State that `after` belongs to: as a rule the next step begins with it.
     ended: (Vec<f64>, Vec<f64>),
-    /// Where the fixed base was then.
-    base: Pose,
+    /// Where the fixed bases were then.
+    bases: Vec<Pose>,
 }
 
 impl JointForces {
@@ -35,12 +35,12 @@ impl JointForces {
         let (before, after) = (vec![V3::default(); n], vec![V3::default(); n]);
         // No state is equal to this one.
         let ended = (vec![f64::NAN; m.nq], vec![f64::NAN; m.nv]);
-        Self { kinematics: Kinematics::new(m), mass, before, after, ended, base: m.base_pose }
+        Self { kinematics: Kinematics::new(m), mass, before, after, ended, bases: bases(m).copied().collect() }
     }
 
     /// Takes the state `q` (nq), `v` (nv) at the beginning of a step.
     pub fn begin(&mut self, m: &Model, q: &[f64], v: &[f64]) {
-        if self.ended.0 == q && self.ended.1 == v && self.base == m.base_pose {
+        if self.ended.0 == q && self.ended.1 == v && self.bases.iter().eq(bases(m)) {
             std::mem::swap(&mut self.before, &mut self.after);
         } else {
             momenta(m, &mut self.kinematics, (q, v), &mut self.before);
@@ -52,7 +52,9 @@ impl JointForces {
         momenta(m, &mut self.kinematics, (q, v), &mut self.after);
         self.ended.0.copy_from_slice(q);
         self.ended.1.copy_from_slice(v);
-        self.base = m.base_pose;
+        for (then, now) in self.bases.iter_mut().zip(bases(m)) {
+            *then = *now;
+        }
     }
 
     /// Force on the body through its joint in the step of `h` seconds between the two states under gravity (m/s²), along
@@ -61,6 +63,10 @@ impl JointForces {
         let g = V3::new(gravity[0], gravity[1], gravity[2]);
         (self.after[body] - self.before[body]) * (1.0 / h) - g * self.mass[body]
     }
+}
+
+fn bases(m: &Model) -> impl Iterator<Item = &Pose> {
+    std::iter::once(&m.base_pose).chain(m.joined.iter().map(|j| &j.base_pose))
 }
 
 /// Linear momentum of what each joint carries, along the axes of the world, kg·m/s.

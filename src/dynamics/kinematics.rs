@@ -6,7 +6,7 @@ use crate::model::{JointType, LinkFrame, Model};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
 
 /// Frames and velocities of all bodies. Makes its memory once.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Kinematics {
     /// Per body: axes of its frame in the world.
     pub r: Vec<M3<f64>>,

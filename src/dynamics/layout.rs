@@ -81,4 +81,9 @@ impl Layout {
             out.push(next);
         }
     }
+
+    /// The most chunks that a body has.
+    pub fn deepest(&self) -> usize {
+        self.of.iter().map(ExactSizeIterator::len).max().unwrap_or(0)
+    }
 }

@@ -7,6 +7,7 @@
 
 use super::articulated::Spatial;
 use super::factor::{FloatingRoot, ball_root, floating_index};
+use super::impulses::Load;
 use super::joint::universal_axis;
 use super::layout::{CHUNK, Layout};
 use super::{Dof, Workspace, aba::joint_transform_p};
@@ -41,35 +42,23 @@ pub struct Response {
     /// Where the velocities lie.
     pub layout: Layout,
     /// Per velocity of a joint with single directions: `D^(−1/2)`, 0 for a locked one.
-    scale: Vec<f64>,
-    balls: Vec<crate::math::M3<f64>>,
-    floats: Vec<FloatingRoot>,
-    float_of: Vec<usize>,
+    pub(super) scale: Vec<f64>,
+    pub(super) balls: Vec<crate::math::M3<f64>>,
+    pub(super) floats: Vec<FloatingRoot>,
+    pub(super) float_of: Vec<usize>,
     /// w, 0 between calls.
     dense: Vec<f64>,
     unlocked: f64,
     /// Forces per body between [`Response::push`] and [`Response::apply`].
-    load: Vec<Load>,
-}
-
-/// What [`Response::apply`] keeps per body.
-#[derive(Clone, Copy, Debug, Default)]
-struct Load {
-    force: Spatial<f64>,
-    own: [f64; 6],
-    /// Does a force act on it or on what it carries?
-    pushed: bool,
-    /// Change of its acceleration.
-    change: Spatial<f64>,
-    moves: bool,
+    pub(super) load: Vec<Load>,
 }
 
 /// A force on its way to the root.
 #[derive(Clone, Copy)]
-struct Walk {
-    body: usize,
-    force: Spatial<f64>,
-    own: [f64; 6],
+pub(super) struct Walk {
+    pub body: usize,
+    pub force: Spatial<f64>,
+    pub own: [f64; 6],
 }
 
 impl Response {
@@ -161,97 +150,6 @@ impl Response {
         let force = to_parent(m, ws, q, walk.body, rest);
         Walk { body: b.parent, force, own: [0.0; 6] }
     }
-
-    /// Notes a force for [`Response::apply`].
-    pub fn push(&mut self, push: &Push, factor: f64) {
-        let load = &mut self.load[push.body];
-        load.pushed = true;
-        load.force.a += push.torque * factor;
-        load.force.l += push.force * factor;
-        for (to, from) in load.own.iter_mut().zip(push.own) {
-            *to += from * factor;
-        }
-    }
-
-    /// Adds what the forces noted since the last call do: to the accelerations `qdd` (nv) and to the workspace, which
-    /// afterwards is as if they had been among the inputs of the dynamics. The reaction of a lock is what it has to
-    /// give beside them.
-    pub fn apply(&mut self, m: &Model, ws: &mut Workspace<f64>, q: &[f64], qdd: &mut [f64]) {
-        for i in (1..m.bodies.len()).rev() {
-            if self.load[i].pushed {
-                self.inward(m, ws, q, i);
-            }
-        }
-        for i in 1..m.bodies.len() {
-            if self.load[i].pushed || self.load[m.bodies[i].parent].moves {
-                self.outward(m, ws, q, i, qdd);
-            }
-        }
-        self.load.fill(Load::default());
-    }
-
-    fn inward(&mut self, m: &Model, ws: &mut Workspace<f64>, q: &[f64], i: usize) {
-        let b = &m.bodies[i];
-        let walk = Walk { body: i, force: self.load[i].force, own: self.load[i].own };
-        let (u, rest) = eliminate(m, ws, q, &walk);
-        ws.acc[i].n -= walk.force.a;
-        ws.acc[i].f -= walk.force.l;
-        match b.joint {
-            JointType::Revolute | JointType::Prismatic | JointType::Universal => {
-                for (d, u) in ws.dof[b.v..b.v + b.joint.nv()].iter_mut().zip(u) {
-                    d.x += d.d * u;
-                    d.own -= u;
-                }
-            }
-            JointType::Spherical => ws.balls[b.ball].add(V3::new(u[0], u[1], u[2])),
-            JointType::Floating => {
-                let x = self.floats[self.float_of[i]].acceleration(spatial(&u));
-                for (d, x) in ws.dof[b.v..b.v + 6].iter_mut().zip([x.a.x, x.a.y, x.a.z, x.l.x, x.l.y, x.l.z]) {
-                    d.x += x;
-                }
-            }
-        }
-        self.load[i].own = u;
-        if b.parent != 0 {
-            let given = to_parent(m, ws, q, i, rest);
-            let parent = &mut self.load[b.parent];
-            parent.pushed = true;
-            parent.force.a += given.a;
-            parent.force.l += given.l;
-        }
-    }
-
-    fn outward(&mut self, m: &Model, ws: &mut Workspace<f64>, q: &[f64], i: usize, qdd: &mut [f64]) {
-        let b = &m.bodies[i];
-        let (from, u) = (self.load[b.parent].change, self.load[i].own);
-        let (r, p) = (ws.kin[i].r, joint_transform_p(b, q));
-        let mut change = Spatial { a: r.tv(from.a), l: r.tv(from.a.cross_add(p, from.l)) };
-        match b.joint {
-            JointType::Revolute => change.a.z += scalar(ws, b.v, change, u[0], qdd),
-            JointType::Prismatic => change.l.z += scalar(ws, b.v, change, u[0], qdd),
-            JointType::Universal => {
-                let first = scalar(ws, b.v, change, u[0], qdd);
-                change.a = universal_axis(Real::sin_cos(q[b.q + 1])).mad(first, change.a);
-                change.a.z += scalar(ws, b.v + 1, change, u[1], qdd);
-            }
-            JointType::Spherical => {
-                let ball = &mut ws.balls[b.ball];
-                let x = ball.yielding(V3::new(u[0], u[1], u[2])).0 + ball.follow(change);
-                ws.ball_in[b.ball].react(&ws.balls[b.ball]);
-                add(&mut qdd[b.v..b.v + 3], [x.x, x.y, x.z]);
-                change.a += x;
-            }
-            JointType::Floating => {
-                let x = self.floats[self.float_of[i]].acceleration(spatial(&u));
-                let (a, l) = (x.a - change.a, x.l - change.l);
-                add(&mut qdd[b.v..b.v + 6], [a.x, a.y, a.z, l.x, l.y, l.z]);
-                change = x;
-            }
-        }
-        ws.kin[i].w += change.a;
-        ws.kin[i].v += change.l;
-        (self.load[i].change, self.load[i].moves) = (change, true);
-    }
 }
 
 impl Walk {
@@ -270,7 +168,7 @@ impl Walk {
 
 /// The load of each direction of a body's joint, the one nearest the body first, and the force that is left.
 #[inline(always)]
-fn eliminate(m: &Model, ws: &Workspace<f64>, q: &[f64], walk: &Walk) -> ([f64; 6], Spatial<f64>) {
+pub(super) fn eliminate(m: &Model, ws: &Workspace<f64>, q: &[f64], walk: &Walk) -> ([f64; 6], Spatial<f64>) {
     let (b, mut f, mut u) = (&m.bodies[walk.body], walk.force, walk.own);
     match b.joint {
         JointType::Revolute => {
@@ -312,28 +210,17 @@ fn take(f: &mut Spatial<f64>, d: &Dof<f64>, u: f64) {
 
 /// About the parent's origin, in the parent's axes.
 #[inline(always)]
-fn to_parent(m: &Model, ws: &Workspace<f64>, q: &[f64], i: usize, f: Spatial<f64>) -> Spatial<f64> {
+pub(super) fn to_parent(m: &Model, ws: &Workspace<f64>, q: &[f64], i: usize, f: Spatial<f64>) -> Spatial<f64> {
     let (r, p) = (&ws.kin[i].r, joint_transform_p(&m.bodies[i], q));
     let l = r.mv(f.l);
     Spatial { a: p.cross_add(l, r.mv(f.a)), l }
 }
 
-/// The change of one coordinate's acceleration and of its reaction.
-#[inline(always)]
-fn scalar(ws: &mut Workspace<f64>, k: usize, a: Spatial<f64>, u: f64, qdd: &mut [f64]) -> f64 {
-    let d = &ws.dof[k];
-    let reach = d.ua.dot(a.a) + d.ul.dot(a.l);
-    let change = d.d * (u - reach);
-    ws.reaction[k] += reach - u;
-    qdd[k] += change;
-    change
-}
-
-fn spatial(u: &[f64; 6]) -> Spatial<f64> {
+pub(super) fn spatial(u: &[f64; 6]) -> Spatial<f64> {
     Spatial { a: V3::new(u[0], u[1], u[2]), l: V3::new(u[3], u[4], u[5]) }
 }
 
-fn add<const N: usize>(to: &mut [f64], from: [f64; N]) {
+pub(super) fn add<const N: usize>(to: &mut [f64], from: [f64; N]) {
     for (to, from) in to.iter_mut().zip(from) {
         *to += from;
     }

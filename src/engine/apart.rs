@@ -22,6 +22,7 @@ pub fn come_apart(m: &Model, s: &State, body: usize) -> (Model, State) {
     let state = cut.state(&left, s, &k);
     left.eulers = m.eulers.iter().filter_map(|e| cut.euler(&left, e)).collect();
     left.softs = m.softs.iter().filter_map(|soft| cut.soft(&left, soft)).collect();
+    left.dampings.retain_mut(|d| cut.index[d.body].map(|new| d.body = new).is_some());
     left.breakables.retain_mut(|b| cut.intact(b.body).map(|new| b.body = new).is_some());
     for axis in 0..m.axes.len() {
         left.axes[axis].slot = cut.slot(&left, axis, s);

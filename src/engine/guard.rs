@@ -2,25 +2,37 @@
 //! explicit step would make energy out of nothing.
 //!
 //! Such a piece is made explicitly, and then the motion relative to the body as a whole is slowed down until the energy is
-//! what the drives and the weight have paid for. The momentum of a robot on a free base stays: the kinetic energy splits, without
-//! a cross term, into that of the locked body with the same momentum and the rest (König). With a fixed base, or in several pieces,
-//! all motion is slowed down alike. Each such piece is counted, and what it took is added up.
+//! what the drives and the weight have paid for. The momentum of every robot, body or piece that floats stays: its kinetic energy
+//! splits, without a cross term, into that of the locked body with the same momentum and the rest (König). What stands on a fixed
+//! base has no locked motion. Each such piece is counted, and what it took is added up.
 
 use super::midpoint::Midpoint;
 use super::rbx::{Rbx, State, StepReport};
-use crate::dynamics::{Energy, Kinematics, energy, kinematics, momentum};
+use crate::dynamics::{Energy, Kinematics, energy, kinematics};
 use crate::math::{Mat3, S3, V3, Vec3};
-use crate::model::{Base, JointType, Model};
+use crate::model::{Body, JointType, Model};
 
 /// Buffers of the guard.
 #[derive(Clone, Debug)]
 pub(super) struct Guard {
     kinematics: Kinematics,
+    /// Per body on the world: the motion of what it carries as if all joints were locked, and itself.
+    locked: Vec<(usize, Locked)>,
+    /// Per body: index into `locked` of what it is part of.
+    part: Vec<usize>,
 }
 
-/// The motion of the whole as if all joints were locked.
+/// The motion of a part that floats as if all its joints were locked; the momenta about the world's origin while it is summed up.
+#[derive(Clone, Copy, Debug, Default)]
 struct Locked {
+    mass: f64,
+    /// Mass × place, kg·m.
+    moment: Vec3,
+    /// About the world's origin.
+    inertia: Mat3,
+    /// Of the body at the centre, rad/s.
     angular: Vec3,
+    /// m/s.
     linear: Vec3,
     center: Vec3,
     kinetic: f64,
@@ -28,7 +40,14 @@ struct Locked {
 
 impl Guard {
     pub fn new(m: &Model) -> Self {
-        Self { kinematics: Kinematics::new(m) }
+        let (mut locked, mut part) = (vec![], vec![0; m.bodies.len()]);
+        for (i, b) in m.bodies.iter().enumerate().skip(1) {
+            part[i] = if b.parent == 0 { locked.len() } else { part[b.parent] };
+            if b.parent == 0 {
+                locked.push((i, Locked::default()));
+            }
+        }
+        Self { kinematics: Kinematics::new(m), locked, part }
     }
 
     fn energy(&mut self, m: &Model, s: &State, gravity: [f64; 3]) -> Energy {
@@ -45,8 +64,8 @@ impl Rbx {
         before.kinetic += mid.start.rotor_energy(m, self.axes.rotors());
         after.kinetic += self.state.rotor_energy(m, self.axes.rotors());
         let (by_start, by_end) = self.axes.paid();
-        let locked = Locked::of(m, &mid.guard.kinematics);
-        let rest = after.kinetic - locked.as_ref().map_or(0.0, |l| l.kinetic);
+        mid.guard.lock(m);
+        let rest = after.kinetic - mid.guard.locked.iter().map(|(_, l)| l.kinetic).sum::<f64>();
         let held = before.kinetic + before.potential - after.potential + by_start - (after.kinetic - rest);
         // share² · rest = held + share · by_end
         let root = (by_end * by_end + 4.0 * rest * held.max(0.0)).sqrt();
@@ -56,47 +75,77 @@ impl Rbx {
         }
         report.guarded += 1;
         report.guarded_energy += (1.0 - share * share) * rest;
-        slow_down(m, &mid.guard.kinematics, &mut self.state, share, locked);
+        mid.guard.slow_down(m, &mut self.state, share);
     }
 }
 
-/// Scales the velocities, those of a free base about its locked motion.
-fn slow_down(m: &Model, k: &Kinematics, s: &mut State, share: f64, locked: Option<Locked>) {
-    for v in &mut s.v {
-        *v *= share;
+impl Guard {
+    /// Finds the locked motion of everything that floats on the world; what stands on it has none.
+    fn lock(&mut self, m: &Model) {
+        let k = &self.kinematics;
+        for (_, locked) in &mut self.locked {
+            *locked = Locked::default();
+        }
+        for (i, b) in m.bodies.iter().enumerate().skip(1) {
+            let (root, part) = &mut self.locked[self.part[i]];
+            if m.bodies[*root].joint == JointType::Floating {
+                part.add(b, (Mat3::from(k.r[i]), k.p[i].into()), (k.w[i].into(), k.v[i].into()));
+            }
+        }
+        for (_, locked) in &mut self.locked {
+            locked.settle();
+        }
     }
-    let (Some(l), Some(base)) = (locked, m.bodies.get(1)) else { return };
-    let (r, p) = (k.r[1], Vec3::from(k.p[1]));
-    let linear = l.linear + l.angular.cross(&(p - l.center));
-    let (w, v) = (r.tv(V3::from(l.angular)), r.tv(V3::from(linear)));
-    for (x, own) in s.v[base.v..base.v + 6].iter_mut().zip([w.x, w.y, w.z, v.x, v.y, v.z]) {
-        *x += (1.0 - share) * own;
+
+    /// Scales the velocities, those of what floats about its locked motion.
+    fn slow_down(&self, m: &Model, s: &mut State, share: f64) {
+        for v in &mut s.v {
+            *v *= share;
+        }
+        let k = &self.kinematics;
+        for (root, l) in self.locked.iter().filter(|(_, l)| l.mass > 0.0) {
+            let (r, p, v) = (k.r[*root], Vec3::from(k.p[*root]), m.bodies[*root].v);
+            let linear = l.linear + l.angular.cross(&(p - l.center));
+            let (w, u) = (r.tv(V3::from(l.angular)), r.tv(V3::from(linear)));
+            for (x, own) in s.v[v..v + 6].iter_mut().zip([w.x, w.y, w.z, u.x, u.y, u.z]) {
+                *x += (1.0 - share) * own;
+            }
+        }
     }
 }
 
 impl Locked {
-    /// `None` if the robot is not one tree on a free base.
-    fn of(m: &Model, k: &Kinematics) -> Option<Self> {
-        let roots = m.bodies[1..].iter().filter(|b| b.parent == 0).count();
-        if m.base != Base::Free || roots != 1 || m.bodies[1].joint != JointType::Floating {
-            return None;
+    /// Adds a body at a pose with a twist along its own axes.
+    fn add(&mut self, b: &Body, (r, origin): (Mat3, Vec3), (w, v): (Vec3, Vec3)) {
+        let c = r * Vec3::from(b.mc);
+        let p = r * (v * b.mass + w.cross(&b.mc.into()));
+        let l = r * (matrix(&b.inertia) * w + Vec3::from(b.mc).cross(&v));
+        self.mass += b.mass;
+        self.moment += c + origin * b.mass;
+        self.linear += p;
+        self.angular += l + origin.cross(&p);
+        // J + 2 (c·o) 1 − (c oᵀ + o cᵀ) + m (o·o 1 − o oᵀ)
+        self.inertia += r * matrix(&b.inertia) * r.transpose();
+        self.inertia += Mat3::identity() * (2.0 * c.dot(&origin) + b.mass * origin.norm_squared());
+        self.inertia -= c * origin.transpose() + origin * c.transpose() + b.mass * origin * origin.transpose();
+    }
+
+    /// From sums to the motion; none if there is no such motion.
+    fn settle(&mut self) {
+        let sums = *self;
+        *self = Self::default();
+        if sums.mass <= 0.0 {
+            return;
         }
-        let p = momentum(m, k);
-        let (mut mass, mut inertia) = (0.0, Mat3::zeros());
-        for (i, b) in m.bodies.iter().enumerate().skip(1) {
-            let r = Mat3::from(k.r[i]);
-            let origin = Vec3::from(k.p[i]) - p.center;
-            let c = r * Vec3::from(b.mc);
-            mass += b.mass;
-            inertia += matrix(&b.inertia.rotated(&k.r[i]));
-            // J + 2 (c·o) 1 − (c oᵀ + o cᵀ) + m (o·o 1 − o oᵀ)
-            inertia += Mat3::identity() * (2.0 * c.dot(&origin) + b.mass * origin.norm_squared());
-            inertia -= c * origin.transpose() + origin * c.transpose() + b.mass * origin * origin.transpose();
+        let center = sums.moment / sums.mass;
+        let about = Mat3::identity() * center.norm_squared() - center * center.transpose();
+        let Some(inverse) = (sums.inertia - about * sums.mass).try_inverse() else { return };
+        let momentum = sums.angular - center.cross(&sums.linear);
+        let (angular, linear) = (inverse * momentum, sums.linear / sums.mass);
+        let kinetic = 0.5 * (sums.mass * linear.norm_squared() + angular.dot(&momentum));
+        if kinetic.is_finite() {
+            *self = Self { angular, linear, center, kinetic, ..sums };
         }
-        let angular = inertia.try_inverse()? * p.angular;
-        let linear = p.linear / mass;
-        let kinetic = 0.5 * (mass * linear.norm_squared() + angular.dot(&p.angular));
-        kinetic.is_finite().then_some(Self { angular, linear, center: p.center, kinetic })
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::guard::Guard;
 use super::rbx::{Rbx, State, StepReport, StepSettings};
-use crate::dynamics::move_coordinates;
+use crate::dynamics::{Scheme, move_coordinates, write_damping};
 use crate::model::Model;
 use crate::solver::{AxisCommand, StepStart, write_softs};
 
@@ -16,6 +16,8 @@ use crate::solver::{AxisCommand, StepStart, write_softs};
 const TOLERANCE: f64 = 1e-8;
 /// An iteration that shrinks by less than this factor per pass does not contract.
 const CONTRACTION: f64 = 0.5;
+/// Velocities that the rows of contacts leave open, m/s, move the middle by about this many times as much.
+const NOISE: f64 = 30.0;
 /// When its passes are used up, a step whose middle moves by less than this is taken; one that had enough of them is halved.
 const COARSE: f64 = 1e-6;
 const ENOUGH: u32 = 5;
@@ -81,15 +83,16 @@ impl Rbx {
                     report.halvings += 1;
                     continue;
                 }
-                End::Converged => self.take(m, mid, part.h),
-                End::Unsettled => {
-                    report.unsettled = true;
+                end @ (End::Converged | End::Unsettled) => {
+                    report.unsettled |= matches!(end, End::Unsettled);
                     self.take(m, mid, part.h);
+                    self.pay(m, &mid.start, part.gravity, report);
                 }
                 End::NoContraction => {
                     report.unsettled = true;
                     self.explicit_piece(m, mid, commands, &part);
                     self.guard(m, mid, part.gravity, report);
+                    self.pay(m, &mid.start, part.gravity, report);
                 }
             }
             done += piece;
@@ -108,9 +111,17 @@ impl Rbx {
         s: &StepSettings,
         report: &mut StepReport,
     ) -> End {
-        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true };
+        let start = StepStart {
+            state: mid.start.as_ref(),
+            commands,
+            h: s.h,
+            whole: self.whole_step,
+            mean: true,
+            sweeps: s.passes,
+        };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects);
+        write_damping(m, &mut self.ws, (s.h, Scheme::Middle), s.effects.body_damping);
         self.qdd.copy_from_slice(&mid.guess);
         self.mean_velocities(mid, s.h);
         self.half_way(m, mid, s.h);
@@ -122,7 +133,7 @@ impl Rbx {
             let misfits = self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, wanted));
             // Accelerations of laws that do not fit may be wild: the middle does not follow them.
             let moved = if misfits == 0 || !wanted { self.mean_velocities(mid, s.h) } else { 1.0 };
-            if misfits == 0 && moved <= TOLERANCE {
+            if misfits == 0 && moved <= TOLERANCE.max(NOISE * self.axes.residual()) {
                 return End::Converged;
             }
             if !moved.is_finite() || (misfits == 0 && pass > 2 && moved > CONTRACTION * last) {
@@ -145,7 +156,14 @@ impl Rbx {
 
     /// The last resort: accelerations of the start of the piece.
     fn explicit_piece(&mut self, m: &Model, mid: &mut Midpoint, commands: &[AxisCommand], s: &StepSettings) {
-        let start = StepStart { state: mid.start.as_ref(), commands, h: s.h, whole: self.whole_step, mean: true };
+        let start = StepStart {
+            state: mid.start.as_ref(),
+            commands,
+            h: s.h,
+            whole: self.whole_step,
+            mean: true,
+            sweeps: s.passes,
+        };
         self.axes.prepare(m, &start, s.effects);
         let bounds = (s.gravity, s.h, s.passes.max(ENOUGH));
         self.axes.settle(m, &mut self.ws, mid.start.as_ref(), bounds, &mut self.qdd);
@@ -187,10 +205,14 @@ impl Rbx {
     fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
         self.axes.finish(m, &self.ws, &mid.middle.q, (h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
+        self.axes.add_damping_work(m, &mut self.ws, (&mid.middle.q, &mid.start.v), (h, &self.qdd));
         for (v, (v0, a)) in self.state.v.iter_mut().zip(mid.start.v.iter().zip(&self.qdd)) {
             *v = v0 + h * a;
         }
         self.take_speeds(mid, h);
+        if self.axes.lift(m, &self.ws, (&mid.middle.q, &mid.start.v, &self.qdd), h, &mut self.lift) {
+            mid.u.iter_mut().zip(&self.lift).for_each(|(u, lift)| *u += lift);
+        }
         self.axes.round_speeds(m, &mut self.state.v);
         move_coordinates(m, &mid.start.q, &mid.u, h, &mut self.state.q);
         self.state.read_angles(m);

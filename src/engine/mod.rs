@@ -3,11 +3,14 @@
 mod apart;
 mod breaking;
 mod coupled;
+mod forest;
 mod guard;
 mod honour;
 mod midpoint;
+mod paid;
 mod rbx;
 mod rk4;
+mod sleep;
 
 pub use apart::come_apart;
 pub use breaking::{BreakWatch, Overload};

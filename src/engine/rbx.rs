@@ -1,11 +1,13 @@
 //! rbx: reduced coordinates, one step at a time.
 
 use super::midpoint::Midpoint;
+use super::paid::Paid;
 use super::rk4::Stages;
-use crate::dynamics::{Workspace, exponential_step, normalize};
+use super::sleep::Sleep;
+use crate::dynamics::{Kinematics, Scheme, Workspace, exponential_step, move_coordinates, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, StateRef, StepStart, write_softs};
+use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart, write_softs};
 
 /// How the state is advanced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,6 +67,13 @@ impl State {
         }
         s.couple_in_range(m);
         s
+    }
+
+    /// Appends the state of a model that joins ([`Model::join`]).
+    pub fn join(&mut self, other: &Self) {
+        self.q.extend_from_slice(&other.q);
+        self.v.extend_from_slice(&other.v);
+        self.angles.extend_from_slice(&other.angles);
     }
 
     /// Position (rad, m) and speed of an axis.
@@ -214,6 +223,8 @@ pub struct StepReport {
     pub guarded: u32,
     /// What they lost, J.
     pub guarded_energy: f64,
+    /// Energy that contacts would have made out of the error of the step, and that was taken out, J.
+    pub trimmed_energy: f64,
     /// A 3DOF group was at its pole.
     pub at_pole: bool,
     /// The new state would not have been finite: it was not taken.
@@ -230,6 +241,13 @@ pub struct Rbx {
     pub(super) ws: Workspace<f64>,
     pub(super) qdd: Vec<f64>,
     pub(super) before: State,
+    /// Speeds that keep bodies out of each other.
+    pub(super) lift: Vec<f64>,
+    unlifted: Vec<f64>,
+    /// `None` if nothing can touch.
+    pub(super) paid: Option<Paid>,
+    /// `None` if nothing ever rests.
+    pub(super) sleep: Option<Sleep>,
     /// The step, s, of which a halved one is a part.
     pub(super) whole_step: f64,
     midpoint: Option<Midpoint>,
@@ -239,12 +257,16 @@ pub struct Rbx {
 impl Rbx {
     /// At the initial state.
     pub fn new(m: &Model) -> Self {
-        let state = State::initial(m);
+        let (state, axes) = (State::initial(m), AxisSet::new(m));
         Self {
-            axes: AxisSet::new(m),
             ws: Workspace::new(m),
             qdd: vec![0.0; m.nv],
             before: state.clone(),
+            lift: vec![0.0; m.nv],
+            unlifted: vec![0.0; m.nq],
+            paid: axes.contacts().is_some().then(|| Paid::new(m)),
+            axes,
+            sleep: Sleep::new(m),
             whole_step: 0.0,
             midpoint: None,
             stages: None,
@@ -259,9 +281,15 @@ impl Rbx {
     }
 
     /// Takes over a state; the steps before it are forgotten.
-    pub fn restart(&mut self, state: &State) {
+    pub fn restart(&mut self, m: &Model, state: &State) {
         self.state.copy_from(state);
         self.axes.reset();
+        self.wake(m);
+        self.forget();
+    }
+
+    /// Forgets the accelerations of the last step.
+    pub(super) fn forget(&mut self) {
         if let Some(midpoint) = &mut self.midpoint {
             midpoint.forget();
         }
@@ -270,6 +298,9 @@ impl Rbx {
     /// One step: the laws of the axes, then the integrator; a state that is not finite is not taken.
     pub fn step(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings) -> StepReport {
         let mut report = StepReport::default();
+        if self.rests(m, commands, s.gravity) {
+            return report;
+        }
         self.before.copy_from(&self.state);
         self.whole_step = s.h;
         let explicit = s.integrator == Integrator::Rk4;
@@ -290,31 +321,54 @@ impl Rbx {
             self.state.copy_from(&self.before);
             report.diverged = true;
         }
+        self.observe(m, s);
         report
+    }
+
+    /// The contacts of the last step that carry something, at these poses.
+    pub fn contacts<'a>(&'a self, k: &'a Kinematics) -> impl Iterator<Item = ContactPoint> + 'a {
+        self.axes.contacts().into_iter().flat_map(|c| c.shown(k))
+    }
+
+    /// The deepest penetration so far, with these poses as the last ones, m.
+    pub fn worst_penetration(&self, k: &Kinematics) -> f64 {
+        self.axes.contacts().map_or(0.0, |c| c.worst.max(c.depth(k)))
     }
 
     fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) {
         let at = self.state.as_ref();
-        let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false };
+        let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false, sweeps: s.passes };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         write_softs(m, &mut self.ws, &start, s.effects);
+        write_damping(m, &mut self.ws, (s.h, Scheme::Start), s.effects.body_damping);
         report.unsettled = !self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
+        self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
+        let lifted = self.axes.lift(m, &self.ws, (at.q, at.v, &self.qdd), s.h, &mut self.lift);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
+        if lifted {
+            self.unlifted.copy_from_slice(&self.state.q);
+            move_coordinates(m, &self.unlifted, &self.lift, s.h, &mut self.state.q);
+        }
         self.axes.round_speeds(m, &mut self.state.v);
         self.state.read_angles(m);
+        let before = std::mem::take(&mut self.before);
+        self.pay(m, &before, s.gravity, report);
+        self.before = before;
     }
 
     /// False, with the state as before, if the step is not smooth.
     fn rk4(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> bool {
-        let start = StepStart { state: self.state.as_ref(), commands, h: s.h, whole: s.h, mean: true };
+        let start =
+            StepStart { state: self.state.as_ref(), commands, h: s.h, whole: s.h, mean: true, sweeps: s.passes };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
-        if !self.axes.is_smooth(m) {
+        if !self.axes.is_smooth(m) || self.axes.collides(m, None) {
             return false;
         }
         let Some(mut st) = self.stages.take() else { return false };
-        let smooth = self.rk4_stages(m, s, &mut st);
+        write_damping(m, &mut self.ws, (s.h, Scheme::Continuous), s.effects.body_damping);
+        let smooth = self.rk4_stages(m, s, &mut st) && !self.axes.collides(m, Some(self.state.as_ref()));
         self.stages = Some(st);
         if !smooth {
             self.state.copy_from(&self.before);

@@ -1,7 +1,7 @@
 //! The classical Runge–Kutta method of order 4.
 
 use super::rbx::{Rbx, StepSettings, normalize_all};
-use crate::dynamics::{aba_hybrid, coordinate_rates};
+use crate::dynamics::{aba_hybrid, coordinate_rates, damping_power};
 use crate::model::Model;
 use crate::solver::CouplingStage;
 
@@ -25,6 +25,7 @@ impl Rbx {
     pub(super) fn rk4_stages(&mut self, m: &Model, s: &StepSettings, st: &mut Stages) -> bool {
         st.sum_q.fill(0.0);
         st.sum_v.fill(0.0);
+        let mut damped = 0.0;
         for (stage, (ahead, weight)) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)].into_iter().enumerate() {
             if stage > 0 {
                 go(&mut self.state.q, &self.before.q, ahead * s.h, &st.rates);
@@ -42,6 +43,7 @@ impl Rbx {
             coordinate_rates(m, &self.state.q, &self.state.v, &mut st.rates);
             accumulate(&mut st.sum_q, &st.rates, weight);
             accumulate(&mut st.sum_v, &self.qdd, weight);
+            damped += weight * damping_power(&self.ws);
         }
         go(&mut self.state.q, &self.before.q, s.h / 6.0, &st.sum_q);
         go(&mut self.state.v, &self.before.v, s.h / 6.0, &st.sum_v);
@@ -50,6 +52,7 @@ impl Rbx {
         if !self.axes.stayed_smooth(m, self.state.as_ref()) {
             return false;
         }
+        self.axes.work.losses -= s.h / 6.0 * damped;
         self.axes.finish_smooth(m, &self.ws, (self.state.as_ref(), s.h), &self.qdd);
         true
     }

@@ -6,9 +6,10 @@ use super::chain::chains;
 use super::membership::memberships;
 use super::rig::rigs;
 use super::{
-    Axis, AxisKind, AxisSlot, Body, DriveLimits, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model, Softness,
+    Axis, AxisKind, AxisSlot, Body, Deactivation, DriveLimits, Effects, EulerFrame, JointType, LinkFrame, LinkInfo,
+    Model, Softness,
 };
-use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind};
+use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind, Link};
 use crate::mass::MassProperties;
 use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
@@ -79,6 +80,8 @@ impl<'a> Builder<'a> {
             breakables: vec![],
             chains: chains(d),
             rigs: vec![],
+            dampings: vec![],
+            joined: vec![],
             colliders: vec![],
             excluded_pairs: vec![],
             effects: Effects::NONE,
@@ -98,6 +101,7 @@ impl<'a> Builder<'a> {
                 monitor: l.monitor,
                 mass: m.mass,
                 membership,
+                deactivation: deactivation(l),
                 frame: LinkFrame::OnBody { body: 0, offset: Pose::identity() },
             })
             .collect();
@@ -324,8 +328,15 @@ impl<'a> Builder<'a> {
         }
         self.model.rigs = rigs(self.d, &self.model);
         self.model.couplings = super::coupling::couplings(self.d, &self.model);
+        self.model.dampings = super::damping::dampings(self.d, &self.model);
         self.model.effects = Effects::called_for(&self.model);
     }
+}
+
+/// All three 0: never (B-9).
+fn deactivation(link: &Link) -> Option<Deactivation> {
+    let d = link.deactivate.as_ref().filter(|d| d.linear > 0.0 || d.angular > 0.0 || d.after > 0.0)?;
+    Some(Deactivation { linear: d.linear, angular: d.angular, after: d.after })
 }
 
 fn axis(j: &Joint, slot: AxisSlot) -> Axis {

@@ -3,8 +3,20 @@
 use super::Model;
 
 /// Names for `--on` and `--off`, in the order of the fields of [`Effects`].
-pub const EFFECT_NAMES: [&str; 9] =
-    ["gravity", "damping", "friction", "limits", "drives", "rotor_inertia", "compliance", "mimic", "breaking"];
+pub const EFFECT_NAMES: [&str; 12] = [
+    "gravity",
+    "damping",
+    "friction",
+    "limits",
+    "drives",
+    "rotor_inertia",
+    "compliance",
+    "mimic",
+    "breaking",
+    "body_damping",
+    "contact",
+    "deactivation",
+];
 
 /// One switch per effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +39,12 @@ pub struct Effects {
     pub mimic: bool,
     /// Joints that come apart (`<constraint break_threshold>`).
     pub breaking: bool,
+    /// Damping of bodies (`<damping>`).
+    pub body_damping: bool,
+    /// Contacts of bodies with each other and with the ground.
+    pub contact: bool,
+    /// Bodies at rest leave the computation (`<deactivate>`).
+    pub deactivation: bool,
 }
 
 impl Effects {
@@ -43,6 +61,9 @@ impl Effects {
             compliance: m.softs.iter().any(|s| s.softness.cfm > 0.0),
             mimic: !m.couplings.is_empty(),
             breaking: !m.breakables.is_empty(),
+            body_damping: !m.dampings.is_empty(),
+            contact: m.colliders.len() > 1,
+            deactivation: m.links.iter().any(|l| l.deactivation.is_some()),
         }
     }
     /// No effect at all.
@@ -56,6 +77,9 @@ impl Effects {
         compliance: false,
         mimic: false,
         breaking: false,
+        body_damping: false,
+        contact: false,
+        deactivation: false,
     };
     /// The switches in the order of [`EFFECT_NAMES`].
     pub fn as_array(&self) -> [bool; EFFECT_NAMES.len()] {
@@ -69,6 +93,9 @@ impl Effects {
             self.compliance,
             self.mimic,
             self.breaking,
+            self.body_damping,
+            self.contact,
+            self.deactivation,
         ]
     }
     /// Switches one effect; `false` if there is none of that name.
@@ -84,6 +111,9 @@ impl Effects {
             "compliance" => &mut self.compliance,
             "mimic" => &mut self.mimic,
             "breaking" => &mut self.breaking,
+            "body_damping" => &mut self.body_damping,
+            "contact" => &mut self.contact,
+            "deactivation" => &mut self.deactivation,
             _ => return false,
         };
         *field = on;

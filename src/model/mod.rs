@@ -8,9 +8,11 @@ mod chain;
 mod collider;
 mod constraint;
 mod coupling;
+mod damping;
 mod drive;
 mod effects;
 mod group;
+mod join;
 mod membership;
 mod rig;
 
@@ -18,9 +20,11 @@ pub use build::Base;
 pub use chain::LinkChain;
 pub use collider::{Collider, Surface};
 pub use constraint::{Breakable, Coupling, SoftDof, Softness};
+pub use damping::BodyDamping;
 pub use drive::{DriveLimits, SERVO_TIME};
 pub use effects::{EFFECT_NAMES, Effects};
 pub use group::{EulerFrame, EulerRates, POLE, rotation};
+pub use join::Joined;
 pub use membership::Membership;
 pub use rig::Rig;
 
@@ -102,8 +106,21 @@ pub struct LinkInfo {
     pub mass: f64,
     /// The joint whose link it belongs to; `None`: fixed to the root.
     pub membership: Option<Membership>,
+    /// When it may leave the computation (B-9); `None`: never.
+    pub deactivation: Option<Deactivation>,
     /// Where the frame is.
     pub frame: LinkFrame,
+}
+
+/// A body below both thresholds for longer than the delay leaves the computation (B-9).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deactivation {
+    /// Speed of the centre of mass, m/s.
+    pub linear: f64,
+    /// rad/s.
+    pub angular: f64,
+    /// s.
+    pub after: f64,
 }
 
 /// How a link's frame follows from the state.
@@ -224,6 +241,10 @@ pub struct Model {
     pub chains: Vec<LinkChain>,
     /// Frames that mirror groups (J-4).
     pub rigs: Vec<Rig>,
+    /// Bodies that lose velocity by themselves.
+    pub dampings: Vec<BodyDamping>,
+    /// Robots and bodies beside the first robot.
+    pub joined: Vec<Joined>,
     /// What collides: shapes of links, and what stands still in the world.
     pub colliders: Vec<Collider>,
     /// Pairs of links (both ascending) whose colliders never touch.
@@ -246,6 +267,11 @@ impl Model {
             AxisSlot::Apart { .. } => None,
         }
     }
+    /// Gives the model what collides; [`Effects`] are as they would have been with it from the start.
+    pub fn set_colliders(&mut self, colliders: Vec<Collider>) {
+        self.colliders = colliders;
+        self.effects.contact = Effects::called_for(self).contact;
+    }
     /// Total mass of all links, kg.
     pub fn mass(&self) -> f64 {
         self.links.iter().map(|l| l.mass).sum()
@@ -254,19 +280,29 @@ impl Model {
     pub fn axis(&self, name: &str) -> Option<usize> {
         self.axes.iter().position(|a| a.name == name)
     }
-    /// Moves the fixed base, and what stands on it, by a rigid motion in the world; what floats stays.
-    pub fn move_fixed_base(&mut self, motion: &Pose) {
+    /// Moves the fixed base of the robot that has this axis, and what stands on it, by a rigid motion in the world; what
+    /// floats stays.
+    pub fn move_fixed_base(&mut self, axis: usize, motion: &Pose) {
         let r = M3::from(*motion.rotation.to_rotation_matrix().matrix());
         let p = V3::from(motion.translation.vector);
-        for b in self.bodies.iter_mut().skip(1).filter(|b| b.parent == 0 && b.joint != JointType::Floating) {
-            (b.tree_r, b.tree_p) = (r.mm(&b.tree_r), r.mv(b.tree_p) + p);
-        }
-        for link in &mut self.links {
-            if let LinkFrame::OnBody { body: 0, offset } = &mut link.frame {
-                *offset = motion * *offset;
+        let (links, robot) = self.robot_of(axis);
+        let mut stands = vec![false; self.bodies.len()];
+        for link in &mut self.links[links] {
+            match &mut link.frame {
+                LinkFrame::OnBody { body: 0, offset } => *offset = motion * *offset,
+                LinkFrame::OnBody { body, .. } | LinkFrame::InGroup { body, .. } => stands[*body] = true,
             }
         }
-        self.base_pose = motion * self.base_pose;
+        for i in (1..self.bodies.len()).rev() {
+            stands[self.bodies[i].parent] |= stands[i] && self.bodies[i].joint != JointType::Floating;
+        }
+        for (b, _) in self.bodies.iter_mut().zip(stands).skip(1).filter(|(_, stands)| *stands) {
+            if b.parent == 0 && b.joint != JointType::Floating {
+                (b.tree_r, b.tree_p) = (r.mm(&b.tree_r), r.mv(b.tree_p) + p);
+            }
+        }
+        let base_pose = robot.map_or(&mut self.base_pose, |i| &mut self.joined[i].base_pose);
+        *base_pose = motion * *base_pose;
     }
     /// Index of the link that an axis itself carries.
     pub fn carried(&self, axis: usize) -> Option<usize> {

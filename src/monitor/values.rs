@@ -71,7 +71,7 @@ fn joint_link(model: &Model, bodies: &[LinkBody], body: usize) -> Option<LinkVal
             _ => None,
         })
         .collect();
-    let is_root = |i: usize| i == model.root_link || model.links[i].membership.as_ref().is_some_and(|m| m.root);
+    let is_root = |i: usize| model.is_root(i) || model.links[i].membership.as_ref().is_some_and(|m| m.root);
     let &(root, root_pose) = members.iter().find(|(i, _)| is_root(*i)).or(members.first())?;
     let seats: Vec<(usize, Pose)> = members.iter().map(|(i, pose)| (*i, root_pose.inv_mul(pose))).collect();
     let heavy: Vec<&(usize, Pose)> = seats.iter().filter(|(i, _)| bodies[*i].properties.mass > 0.0).collect();

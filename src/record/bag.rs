@@ -4,7 +4,7 @@ use super::Sample;
 use super::messages::{Clock, Header, JointState, Odometry, Time, WithCovariance};
 use super::metadata::{Contents, Topic, offered_qos};
 use super::schema::{CLOCK, JOINT_STATE, MessageType, ODOMETRY};
-use crate::model::{Base, Model};
+use crate::model::Model;
 use crate::world::Snapshot;
 use byteorder::LittleEndian;
 use mcap::records::MessageHeader;
@@ -18,12 +18,13 @@ const WORLD: &str = "world";
 /// Encapsulation header of CDR: plain, little endian, no options.
 const CDR_LITTLE_ENDIAN: [u8; 4] = [0, 1, 0, 0];
 
-/// Writes `/clock`, `/joint_states` and, for a free base, `/odom` (root link in `world`) per sample.
+/// Writes `/clock`, `/joint_states` and, for a free base, `/odom` (root link in `world`) per sample; `/NAME/odom` for whatever
+/// else floats.
 pub struct BagWriter<W: Write + Seek> {
     mcap: Writer<W>,
     clock: u16,
     joint_states: u16,
-    odometry: Option<FreeBase>,
+    odometry: Vec<FreeBase>,
     axes: Vec<String>,
     contents: Contents,
     payload: Vec<u8>,
@@ -46,19 +47,17 @@ impl<W: Write + Seek> BagWriter<W> {
         let options = WriteOptions::new().profile("ros2").library(library).compression(None);
         let mut mcap = options.create(out).map_err(io_error)?;
         let mut contents = Contents::default();
-        let mut add = |topic: &'static str, kind: MessageType| {
-            contents.topics.push(Topic { name: topic, kind });
+        let mut add = |topic: &str, kind: MessageType| {
+            contents.topics.push(Topic { name: topic.to_owned(), kind });
             add_channel(&mut mcap, topic, kind)
         };
         let clock = add("/clock", CLOCK)?;
         let joint_states = add("/joint_states", JOINT_STATE)?;
-        let odometry = match model.base {
-            Base::Free => {
-                let (link, frame) = (model.root_link, model.links[model.root_link].name.clone());
-                Some(FreeBase { channel: add("/odom", ODOMETRY)?, link, frame })
-            }
-            Base::Fixed => None,
+        let floats = |(name, link): (&str, usize)| {
+            let topic = if link == model.root_link { "/odom".to_owned() } else { format!("/{name}/odom") };
+            Ok(FreeBase { channel: add(&topic, ODOMETRY)?, link, frame: model.links[link].name.clone() })
         };
+        let odometry = model.floating().map(floats).collect::<io::Result<Vec<_>>>()?;
         let axes = model.axes.iter().map(|a| a.name.clone()).collect();
         Ok(Self { mcap, clock, joint_states, odometry, axes, contents, payload: Vec::new() })
     }
@@ -75,7 +74,7 @@ impl<W: Write + Seek> BagWriter<W> {
         let stamp = Time::from_ns(s.stamp_ns);
         messages.write(self.clock, &Clock { clock: stamp })?;
         messages.write(self.joint_states, &joint_state(stamp, &self.axes, s))?;
-        if let Some(base) = &self.odometry {
+        for base in &self.odometry {
             messages.write(base.channel, &odometry(stamp, base, s))?;
         }
         self.contents.count(s.stamp_ns);

@@ -1,19 +1,19 @@
 //! A run as comma-separated values: 17 significant digits, so that a value read back has the same bits.
 
 use super::Sample;
-use crate::model::{Base, Model};
+use crate::model::Model;
 use crate::world::Snapshot;
 use std::io::{self, BufWriter, Write};
 
 /// Writes one row per sample.
 pub struct CsvWriter<W: Write> {
     out: BufWriter<W>,
-    /// The root link, if the base is free.
-    base: Option<usize>,
+    /// Root links of all that floats.
+    floating: Vec<usize>,
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// Writes the header: `time`, per axis `NAME.position`, `.velocity`, `.effort`, the base where it is free, energies,
+    /// Writes the header: `time`, per axis `NAME.position`, `.velocity`, `.effort`, whatever floats (the base, then what joined the robot), energies,
     /// momenta.
     ///
     /// # Errors
@@ -21,7 +21,7 @@ impl<W: Write> CsvWriter<W> {
     pub fn new(out: W, model: &Model) -> io::Result<Self> {
         let mut out = BufWriter::new(out);
         writeln!(out, "{}", columns(model).join(","))?;
-        Ok(Self { out, base: (model.base == Base::Free).then_some(model.root_link) })
+        Ok(Self { out, floating: model.floating().map(|(_, root)| root).collect() })
     }
 
     /// Writes a sample.
@@ -36,7 +36,7 @@ impl<W: Write> CsvWriter<W> {
                 number(&mut self.out, ",", x)?;
             }
         }
-        for x in self.base.iter().flat_map(|root| base(*root, s)) {
+        for x in self.floating.iter().flat_map(|root| base(*root, s)) {
             number(&mut self.out, ",", x)?;
         }
         let energies = [s.kinetic_energy, s.potential_energy];
@@ -60,16 +60,16 @@ fn columns(m: &Model) -> Vec<String> {
     for a in &m.axes {
         names.extend(["position", "velocity", "effort"].map(|kind| format!("{}.{kind}", a.name)));
     }
-    if m.base == Base::Free {
+    for (name, _) in m.floating() {
         let parts = ["x", "y", "z", "qx", "qy", "qz", "qw", "wx", "wy", "wz", "vx", "vy", "vz"];
-        names.extend(parts.map(|p| format!("base.{p}")));
+        names.extend(parts.map(|p| format!("{name}.{p}")));
     }
     names.extend(["energy.kinetic", "energy.potential"].map(String::from));
     names.extend(["lx", "ly", "lz", "px", "py", "pz"].map(|p| format!("momentum.{p}")));
     names
 }
 
-/// Pose of the root link in the world, its twist along its own axes.
+/// Pose of a root link in the world, its twist along its own axes.
 fn base(root: usize, s: &Snapshot) -> [f64; 13] {
     let (pose, twist) = (&s.link_pose[root], &s.link_twist[root]);
     let (p, q, w, v) = (&pose.translation, pose.rotation.coords, &twist.angular, &twist.linear);

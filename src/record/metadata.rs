@@ -30,10 +30,10 @@ impl Contents {
 }
 
 /// A topic.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Topic {
     /// Absolute name.
-    pub name: &'static str,
+    pub name: String,
     /// Type.
     pub kind: MessageType,
 }
@@ -77,7 +77,7 @@ struct TopicCount {
 
 #[derive(Serialize)]
 struct TopicMetadata {
-    name: &'static str,
+    name: String,
     r#type: String,
     serialization_format: &'static str,
     offered_qos_profiles: Vec<Qos>,
@@ -142,7 +142,7 @@ pub fn yaml(contents: &Contents, file: &Path) -> io::Result<String> {
 
 fn topic_count(topic: &Topic, message_count: u64) -> TopicCount {
     let topic_metadata = TopicMetadata {
-        name: topic.name,
+        name: topic.name.clone(),
         r#type: topic.kind.full_name(),
         serialization_format: "cdr",
         offered_qos_profiles: vec![reliable()],

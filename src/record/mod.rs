@@ -1,6 +1,7 @@
 //! What a run leaves on disk: rows of comma-separated values, or a bag of ROS 2 messages.
 
 mod bag;
+mod contacts;
 mod csv;
 mod folder;
 pub mod messages;
@@ -9,6 +10,7 @@ mod sample;
 mod schema;
 
 pub use bag::BagWriter;
+pub use contacts::ContactWriter;
 pub use csv::CsvWriter;
 pub use sample::Sample;
 

@@ -11,6 +11,8 @@ use std::thread::Thread;
 const TIMING_PERIOD_NS: u64 = 1_000_000_000;
 /// Pause while the ring is full and nothing may be dropped, ns.
 const FULL_RING_PAUSE_NS: u64 = 100_000;
+/// How often the state is shown while time stands, ns; parameters are looked at as often.
+const PAUSED_PERIOD_NS: u64 = 20_000_000;
 /// Longest single sleep, so that the end of the program is noticed in time, ns.
 const LONGEST_SLEEP_NS: u64 = 50_000_000;
 
@@ -49,9 +51,12 @@ impl ControlLoop {
 
     /// One control interval: inputs, physics, outputs, bookkeeping.
     fn interval(&mut self) {
+        self.take_inputs();
+        if self.pace.paused {
+            return self.stand();
+        }
         let start = clock::now_ns();
         let lateness = if self.paced() { start.saturating_sub(self.deadline) } else { 0 };
-        self.take_inputs();
         let before = clock::now_ns();
         self.world.advance();
         let step = clock::now_ns() - before;
@@ -61,6 +66,17 @@ impl ControlLoop {
         if start >= self.next_hand_over {
             self.end.hand_over(&mut self.timing);
             self.next_hand_over = start + TIMING_PERIOD_NS;
+        }
+    }
+
+    /// Shows the state again and sets the deadline anew: time that has stood is not caught up.
+    fn stand(&mut self) {
+        self.emit();
+        let now = clock::now_ns();
+        self.deadline = now + PAUSED_PERIOD_NS;
+        if now >= self.next_hand_over {
+            self.end.hand_over(&mut self.timing);
+            self.next_hand_over = now + TIMING_PERIOD_NS;
         }
     }
 
@@ -102,6 +118,7 @@ impl ControlLoop {
             }
             let now = clock::now_ns();
             let until = match self.paced() {
+                _ if self.pace.paused && now < self.deadline => self.deadline,
                 true if now < self.deadline => self.deadline,
                 false if !self.end.has_room() => now + FULL_RING_PAUSE_NS,
                 _ => return true,

@@ -16,6 +16,10 @@ pub struct Latest {
     pub interval: u64,
     /// Counters of the world.
     pub stats: Stats,
+    /// Contacts that carry something.
+    pub contacts: usize,
+    /// Does time stand by the parameter `paused`?
+    pub paused: bool,
     /// Is the state finite?
     pub finite: bool,
     /// Joints that have come apart.
@@ -112,6 +116,7 @@ impl Diagnostics {
             (false, _) => (Level::Error, "diverged: stands still at the last finite state"),
             (_, false) => (Level::Warn, "joints have come apart"),
             _ if latest.stats.guarded_pieces > 0 => (Level::Warn, "limbs too fast for any step were slowed down"),
+            _ if latest.paused => (Level::Ok, "paused"),
             _ => (Level::Ok, "finite"),
         };
         let mut values = vec![
@@ -123,7 +128,10 @@ impl Diagnostics {
             pair("halvings", latest.stats.halvings),
             pair("guarded pieces", latest.stats.guarded_pieces),
             pair("guarded energy [J]", latest.stats.guarded_energy),
+            pair("trimmed energy [J]", latest.stats.trimmed_energy),
             pair("pole steps", latest.stats.pole_steps),
+            pair("contacts", latest.contacts),
+            pair("worst penetration [m]", latest.stats.worst_penetration),
             pair("finite", latest.finite),
             pair("broken joints", latest.broken.len()),
         ];

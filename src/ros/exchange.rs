@@ -22,6 +22,8 @@ const TIMING_BOXES: usize = 3;
 pub struct Pace {
     /// Settings of the world.
     pub settings: Settings,
+    /// Time stands still; states are shown all the same.
+    pub paused: bool,
     /// Real time per control interval = interval / factor; 0 = as fast as the snapshots are taken.
     pub real_time_factor: f64,
     /// Control intervals that may be caught up before the deadline is set anew.
@@ -183,7 +185,7 @@ mod tests {
     }
 
     fn ends(world: &World) -> (ControlEnd, PublishEnd, CommandEnd) {
-        let pace = Pace { settings: Settings::default(), real_time_factor: 1.0, max_catch_up: 100 };
+        let pace = Pace { settings: Settings::default(), paused: false, real_time_factor: 1.0, max_catch_up: 100 };
         exchange(world, &world.commands().to_vec(), &pace, Arc::default()).unwrap()
     }
 

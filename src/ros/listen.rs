@@ -13,7 +13,7 @@ use futures::StreamExt;
 use ros2_client::{Node, Subscription};
 use std::cell::RefCell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// The three command topics.
 pub struct CommandTopics {
@@ -40,6 +40,7 @@ pub struct Live {
     /// Counters of commands.
     pub counts: CommandCounts,
     tf_rate_bits: AtomicU64,
+    paused: AtomicBool,
 }
 
 impl Live {
@@ -48,9 +49,15 @@ impl Live {
         f64::from_bits(self.tf_rate_bits.load(Ordering::Relaxed))
     }
 
+    /// Parameter `paused`.
+    pub fn paused(&self) -> bool {
+        self.paused.load(Ordering::Relaxed)
+    }
+
     /// Takes over what the publishing thread needs to know.
     pub fn take(&self, values: &Values) {
         self.tf_rate_bits.store(values.tf_rate().to_bits(), Ordering::Relaxed);
+        self.paused.store(values.pace().paused, Ordering::Relaxed);
     }
 }
 

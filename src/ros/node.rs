@@ -10,6 +10,7 @@ use super::listen::{Desk, Live};
 use super::log::{self, Logger};
 use super::parameters::{Values, show};
 use super::publish_loop::PublishLoop;
+use crate::engine::State;
 use crate::model::{Base, Model};
 use crate::world::{AxisCommand, Mode, World};
 use std::io::Write;
@@ -26,6 +27,8 @@ pub struct Robot {
     pub urdf: Arc<str>,
     /// The model.
     pub model: Arc<Model>,
+    /// Where everything starts.
+    pub initial: State,
     /// What the URDF says and the simulation does not do yet, one line each.
     pub pending: Vec<String>,
 }
@@ -34,6 +37,7 @@ pub struct Robot {
 pub fn run(robot: &Robot, args: &RosArgs, mut values: Values, environment: &Environment) -> Result<(), String> {
     log::show_library_errors();
     let stop = stop_on_signals()?;
+    values.pause_at_start()?;
     values.set_axes(robot.model.axes.iter().map(|a| a.name.clone()).collect());
     let (world, commands) = world(robot, &values)?;
     let mut initial = world.new_snapshot();
@@ -79,6 +83,7 @@ fn stop_on_signals() -> Result<Arc<AtomicBool>, String> {
 /// The world at its start, and the commands of its axes.
 fn world(robot: &Robot, values: &Values) -> Result<(World, Vec<AxisCommand>), String> {
     let mut world = World::new(robot.model.clone(), values.pace().settings)?;
+    world.set_initial_state(robot.initial.clone());
     let mut initial = world.new_snapshot();
     world.write_snapshot(&mut initial);
     let commands = initial_commands(&robot.model, &initial.position, values.hold_at_start());

@@ -3,6 +3,7 @@
 use super::log::Logger;
 use super::messages::{
     Clock, Header, JointState, Shared, StringMessage, TFMessage, Time, Twist as TwistMessage, TwistStamped,
+    Wrench as WrenchMessage, WrenchStamped,
 };
 use super::names::topic_tokens;
 use super::tf::{Frames, WORLD};
@@ -23,12 +24,14 @@ pub struct Outlet {
     clock: Publisher<Clock>,
     joint_states: Publisher<JointState<SharedNames>>,
     axis_names: SharedNames,
-    twists: Vec<Monitored>,
+    monitored: Vec<Monitored>,
     tf: Publisher<TFMessage>,
     tf_static: Publisher<TFMessage>,
     robot_description: Publisher<StringMessage>,
     /// Simulated time from which the next /tf is due, ns.
     next_tf_ns: i64,
+    /// Stamp of the state published last: while time stands, all of it is repeated.
+    last_ns: i64,
     /// Messages that DDS did not take because a reliable subscriber is too far behind.
     pub refused_by_dds: u64,
 }
@@ -36,7 +39,9 @@ pub struct Outlet {
 struct Monitored {
     link: usize,
     frame: MonitorFrame,
-    publisher: Publisher<TwistStamped>,
+    twist: Publisher<TwistStamped>,
+    /// `None`: the link does not collide.
+    wrench: Option<Publisher<WrenchStamped>>,
 }
 
 impl Outlet {
@@ -49,12 +54,13 @@ impl Outlet {
             frames: Frames::new(model),
             joint_states: topics.publisher("joint_states", "sensor_msgs/JointState", &stream)?,
             axis_names: Shared::new(model.axes.iter().map(|a| a.name.clone()).collect()),
-            twists: monitored(topics, model, log)?,
+            monitored: monitored(topics, model, log)?,
             clock: topics.publisher("/clock", "rosgraph_msgs/Clock", &stream)?,
             tf: topics.publisher("/tf", "tf2_msgs/TFMessage", &stream)?,
             tf_static: topics.publisher("/tf_static", "tf2_msgs/TFMessage", &latched)?,
             robot_description: topics.publisher("robot_description", "std_msgs/String", &latched)?,
             next_tf_ns: i64::MIN,
+            last_ns: i64::MIN,
             refused_by_dds: 0,
         })
     }
@@ -71,10 +77,15 @@ impl Outlet {
         let stamp = Time::from_ns(snapshot.stamp_ns);
         let mut refused = send(&self.clock, Clock { clock: stamp });
         refused += send(&self.joint_states, self.joint_state(snapshot, stamp));
-        for m in &self.twists {
-            refused += send(&m.publisher, self.twist(m, snapshot, stamp));
+        for m in &self.monitored {
+            refused += send(&m.twist, self.twist(m, snapshot, stamp));
+            if let Some(wrench) = &m.wrench {
+                refused += send(wrench, self.wrench(m, snapshot, stamp));
+            }
         }
-        if tf_rate > 0.0 && snapshot.stamp_ns >= self.next_tf_ns {
+        let stands = snapshot.stamp_ns == self.last_ns;
+        self.last_ns = snapshot.stamp_ns;
+        if tf_rate > 0.0 && (stands || snapshot.stamp_ns >= self.next_tf_ns) {
             refused += send(&self.tf, self.frames.moving(snapshot));
             self.next_tf_ns = next_on_grid(snapshot.stamp_ns, 1e9 / tf_rate);
         }
@@ -103,6 +114,19 @@ impl Outlet {
         let twist = TwistMessage { linear: linear.into(), angular: angular.into() };
         TwistStamped { header: Header { stamp, frame_id }, twist }
     }
+
+    fn wrench(&self, m: &Monitored, snapshot: &Snapshot, stamp: Time) -> WrenchStamped {
+        let w = snapshot.link_wrench[m.link];
+        let (frame_id, force, torque) = match m.frame {
+            MonitorFrame::World => (WORLD.to_string(), w.force, w.torque),
+            MonitorFrame::Body => {
+                let r_lw = snapshot.link_pose[m.link].rotation.inverse();
+                (self.model.links[m.link].name.clone(), r_lw * w.force, r_lw * w.torque)
+            }
+        };
+        let wrench = WrenchMessage { force: force.into(), torque: torque.into() };
+        WrenchStamped { header: Header { stamp, frame_id }, wrench }
+    }
 }
 
 fn monitored(topics: &mut Topics, model: &Model, log: &Logger) -> Result<Vec<Monitored>, String> {
@@ -114,8 +138,10 @@ fn monitored(topics: &mut Topics, model: &Model, log: &Logger) -> Result<Vec<Mon
         if token != name {
             log.warn(format!("link '{name}' has characters that a topic name must not have; its twist is on {topic}"));
         }
-        let publisher = topics.publisher(&topic, "geometry_msgs/TwistStamped", &stream_qos())?;
-        all.push(Monitored { link, frame, publisher });
+        let twist = topics.publisher(&topic, "geometry_msgs/TwistStamped", &stream_qos())?;
+        let collides = model.effects.contact && model.colliders.iter().any(|c| c.link == Some(link));
+        let wrench = || topics.publisher(&format!("wrench/{token}"), "geometry_msgs/WrenchStamped", &stream_qos());
+        all.push(Monitored { link, frame, twist, wrench: collides.then(wrench).transpose()? });
     }
     Ok(all)
 }

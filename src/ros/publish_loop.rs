@@ -78,13 +78,14 @@ impl<'a> PublishLoop<'a> {
 
     /// Publishes every state that waits, up to one ring full, and takes over the timing records.
     fn drain(&mut self) {
-        let tf_rate = self.live.tf_rate();
+        let (tf_rate, paused) = (self.live.tf_rate(), self.live.paused());
         for _ in 0..=self.end.waiting() {
             let (outlet, latest) = (&mut self.connection.outlet, &mut self.latest);
             let any = self.end.next(|s| {
                 outlet.publish(s, tf_rate);
                 let (stamp_ns, interval, stats, finite) = (s.stamp_ns, s.interval, s.stats, s.finite);
-                *latest = Some(Latest { stamp_ns, interval, stats, finite, broken: s.broken.clone() });
+                let (contacts, broken) = (s.contacts.len() + s.omitted_contacts, s.broken.clone());
+                *latest = Some(Latest { stamp_ns, interval, stats, contacts, paused, finite, broken });
             });
             if !any {
                 break;

@@ -27,12 +27,12 @@ struct Frame {
 impl Frames {
     /// Frames of the links and rigs of `model`.
     pub fn new(model: &Model) -> Self {
-        let frame = |l: &crate::model::LinkInfo| Frame {
+        let frame = |(i, l): (usize, &crate::model::LinkInfo)| Frame {
             name: l.name.clone(),
             parent: l.parent,
-            fixed: if l.parent.is_some() { l.fixed } else { model.base == Base::Fixed },
+            fixed: l.fixed || model.roots().any(|root| root == (i, Base::Fixed)),
         };
-        Self { links: model.links.iter().map(frame).collect(), rigs: model.rigs.clone() }
+        Self { links: model.links.iter().enumerate().map(frame).collect(), rigs: model.rigs.clone() }
     }
 
     /// Frames whose place in their parent never changes.

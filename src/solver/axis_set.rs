@@ -8,6 +8,8 @@
 //! A sliding axis moves with the mean of its speeds at the start and the end of the step, of second order. One that stands,
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
+use super::contacts::Contacts;
+use super::contested::Contest;
 use super::couplings::Couplings;
 use super::law::{FRICTION, Law};
 use super::mobility::Answers;
@@ -43,6 +45,8 @@ pub struct StepStart<'a> {
     pub whole: f64,
     /// Sliding axes move with their mean speed; else all move with the speed at the end.
     pub mean: bool,
+    /// Sweeps over the rows of contacts, at most.
+    pub sweeps: u32,
 }
 
 /// Work at the axes since the start, J: summed over the steps as h·torque·mean speed.
@@ -85,10 +89,23 @@ pub struct AxisSet {
     pub effort: Vec<f64>,
     /// Work since the start.
     pub work: Work,
-    pub(super) paid: (f64, f64),
+    /// Per axis, then per soft direction: work of the last step with the speeds at its start, and at its end, J.
+    pub(super) paid: Vec<(f64, f64)>,
+    /// The same of the damping of bodies.
+    pub(super) damped: (f64, f64),
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
+    /// Per axis: is it a row beside contacts?
+    pub(super) contests: Vec<Contest>,
+    /// Pass of the step.
+    passes: u32,
+    /// Step of the last pass, s.
+    pub(super) h: f64,
+    /// Per axis: its tree is out of the computation.
+    pub resting: Vec<bool>,
     pub(super) mean: bool,
+    /// Sweeps over the rows of contacts, at most.
+    pub(super) sweeps: u32,
     best: usize,
     patience: u32,
     /// Rows that hold followers to their leaders, if there are any.
@@ -128,9 +145,15 @@ impl AxisSet {
             couplings: Couplings::new(model),
             answers: Some(Box::new(Answers::new(model))),
             work: Work::default(),
-            paid: (0.0, 0.0),
+            paid: vec![(0.0, 0.0); n + model.softs.len()],
+            damped: (0.0, 0.0),
             worst_stop: 0.0,
+            contests: vec![Contest::default(); n],
+            passes: 0,
+            h: 0.0,
+            resting: vec![false; n],
             mean: false,
+            sweeps: 1,
             best: usize::MAX,
             patience: PATIENCE,
         }
@@ -141,6 +164,7 @@ impl AxisSet {
         self.memory.fill(0);
         self.effort.fill(0.0);
         self.stiff.fill(false);
+        self.resting.fill(false);
         self.brakes.fill(Brakes::default());
         (self.work, self.worst_stop) = (Work::default(), 0.0);
         if let Some(couplings) = &mut self.couplings {
@@ -152,7 +176,12 @@ impl AxisSet {
     pub fn prepare(&mut self, m: &Model, start: &StepStart, effects: Effects) -> bool {
         let at_pole = self.update_rates(m, start.state.angles);
         (self.best, self.patience) = (usize::MAX, PATIENCE);
+        (self.passes, self.h) = (0, start.h);
+        self.contests.fill(Contest::default());
         for (i, axis) in m.axes.iter().enumerate() {
+            if self.resting[i] {
+                continue;
+            }
             let (q, v) = self.axis_state(m, axis, start.state);
             self.speed[i] = v;
             if effects.limits {
@@ -176,7 +205,7 @@ impl AxisSet {
             self.place[i] = self.laws[i].guess(v, self.memory[i]);
             self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }
-        self.mean = start.mean;
+        (self.mean, self.sweeps) = (start.mean, start.sweeps);
         self.start_couplings(m, start);
         self.set_weights(m);
         at_pole
@@ -217,8 +246,9 @@ impl AxisSet {
         if let Some(answers) = &mut self.answers {
             answers.forget();
         }
-        let loose = self.couple(m, ws, at, h, qdd);
+        let loose = self.couple(m, ws, (at, v0), h, qdd);
         let misfits = self.misfits(m, ws, (h, qdd)) + loose;
+        self.passes += 1;
         if misfits > 0 && wanted {
             if misfits < self.best {
                 (self.best, self.patience) = (misfits, PATIENCE);
@@ -249,6 +279,15 @@ impl AxisSet {
         let (mut count, mut breaking) = (0, 0);
         for (i, axis) in m.axes.iter().enumerate() {
             self.moves[i] = 0;
+            if self.resting[i] {
+                continue;
+            }
+            if self.contests[i].on {
+                let end = self.speed[i] + h * self.axis_rate(m, axis, qdd);
+                self.moves[i] = self.leaves_contest(i, end);
+                count += usize::from(self.moves[i] != 0);
+                continue;
+            }
             let (law, place) = (&self.laws[i], self.place[i]);
             if place % 2 == 1 {
                 self.moves[i] = law.leaves_riser(place / 2, self.riser_torque(m, ws, i, qdd));
@@ -290,8 +329,9 @@ impl AxisSet {
 
     /// Moves all that do not fit, or only the last of them.
     fn apply(&mut self, all: bool) {
+        let contest = self.passes > 1 && self.contacts().is_some_and(|c| !c.is_empty());
         for i in (0..self.moves.len()).rev() {
-            if self.moves[i] == 0 {
+            if self.moves[i] == 0 || (contest && self.contest(i, self.moves[i])) {
                 continue;
             }
             self.place[i] = self.laws[i].neighbour(self.place[i], self.moves[i]);
@@ -306,8 +346,13 @@ impl AxisSet {
     /// Ends an implicit step of `h` seconds with these accelerations: remembers the places, writes efforts and work. `q` (nq) is
     /// the state of the last pass.
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
-        self.paid = (0.0, 0.0);
+        self.paid.fill((0.0, 0.0));
+        self.settle_contests();
+        self.damped = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
+            if self.resting[i] {
+                continue;
+            }
             let (law, place) = (&self.laws[i], self.place[i]);
             let acceleration = self.axis_rate(m, axis, qdd);
             let end = self.speed[i] + h * acceleration;
@@ -327,15 +372,19 @@ impl AxisSet {
             };
             self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
             self.effort[i] = effort;
-            self.paid.0 += 0.5 * h * total * self.speed[i];
-            self.paid.1 += 0.5 * h * total * end;
+            self.paid[i] = (0.5 * h * total * self.speed[i], 0.5 * h * total * end);
             self.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
         }
     }
 
     /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.
     pub fn paid(&self) -> (f64, f64) {
-        self.paid
+        self.paid.iter().fold(self.damped, |sum, p| (sum.0 + p.0, sum.1 + p.1))
+    }
+
+    /// The same per axis, then per direction in which a joint yields.
+    pub fn paid_by(&self) -> &[(f64, f64)] {
+        &self.paid
     }
 
     /// Per axis: inertia of the rotor that counts, kg·m² or kg.
@@ -346,6 +395,32 @@ impl AxisSet {
     /// True if no axis has been moved to another part of its law in the last pass.
     pub fn is_calm(&self) -> bool {
         self.best == usize::MAX
+    }
+
+    /// Do contacts make the step from its start, or to this state, anything but smooth?
+    pub fn collides(&mut self, m: &Model, end: Option<StateRef>) -> bool {
+        let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) else { return false };
+        match end {
+            None => contacts.touching(),
+            Some(s) => contacts.overlap(m, s.q, s.v),
+        }
+    }
+
+    /// Tells the contacts which bodies rest.
+    pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
+        if let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) {
+            contacts.rest(rests);
+        }
+    }
+
+    /// What the contacts' rows were left with in the last pass, m/s.
+    pub fn residual(&self) -> f64 {
+        self.contacts().map_or(0.0, |c| if c.is_empty() { 0.0 } else { c.residual })
+    }
+
+    /// All contacts, if anything can touch.
+    pub fn contacts(&self) -> Option<&Contacts> {
+        self.couplings.as_ref().and_then(|c| c.contacts())
     }
 
     /// Gradients of the angles at these angles; true if a 3DOF group is at its pole.

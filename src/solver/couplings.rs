@@ -3,6 +3,8 @@
 //! followers, without a law that knows of the other.
 
 use super::axis_set::{AxisSet, StateRef, StepStart};
+use super::contacts::{Contacts, Pass};
+use super::lifts::{Lift, LiftKind};
 use super::rows::{Kind, Rows};
 use crate::dynamics::{Push, Response, Workspace};
 use crate::model::{AxisSlot, Coupling, Model};
@@ -36,6 +38,8 @@ pub struct Couplings {
     pairs: Vec<Pair>,
     /// Step of the impulses that are kept, s.
     h: f64,
+    /// `None` if nothing can touch.
+    pub(super) contacts: Option<Contacts>,
 }
 
 /// One coupling, and what the present pass found of it.
@@ -87,7 +91,8 @@ impl Couplings {
             Some(Pair { coupling: *c, follower, leader, pushes: Default::default(), back: 0.0, bias: 0.0, slack: 0.0 })
         };
         let pairs: Vec<Pair> = m.couplings_in_force().iter().filter_map(pair).collect();
-        if pairs.is_empty() {
+        let contacts = if m.effects.contact { Contacts::new(m) } else { None };
+        if pairs.is_empty() && contacts.is_none() {
             return None;
         }
         let response = Response::new(m);
@@ -97,24 +102,47 @@ impl Couplings {
             response.layout.join(pair.follower.body, pair.leader.body, &mut ids);
             rows.add(Kind::EQUALITY, 1, &ids);
         }
-        Some(Box::new(Self { response, rows, pairs, h: 0.0 }))
+        Some(Box::new(Self { response, rows, pairs, h: 0.0, contacts }))
     }
 
     /// Forgets the last step.
     pub fn reset(&mut self) {
         self.rows.reset();
         self.h = 0.0;
+        if let Some(contacts) = &mut self.contacts {
+            contacts.reset();
+        }
     }
 
-    /// Solves the rows of `self.pairs` for a step of `h` and applies their impulses. True if that converged.
-    fn solve(&mut self, m: &Model, ws: &mut Workspace<f64>, q: &[f64], h: f64, qdd: &mut [f64]) -> bool {
+    /// All contacts, if anything can touch.
+    pub fn contacts(&self) -> Option<&Contacts> {
+        self.contacts.as_ref()
+    }
+
+    /// Is there nothing to solve?
+    fn idle(&self) -> bool {
+        self.pairs.is_empty() && self.contacts.as_ref().is_none_or(Contacts::is_empty)
+    }
+
+    /// Solves the rows of `self.pairs`, and those of the contacts of an implicit step, and applies their impulses. True if
+    /// the pairs hold then.
+    fn solve(
+        &mut self,
+        m: &Model,
+        ws: &mut Workspace<f64>,
+        (pass, contacts): (&Pass, bool),
+        set: &mut AxisSet,
+        qdd: &mut [f64],
+    ) -> bool {
+        let h = pass.h;
         if self.h > 0.0 && self.h != h {
             self.rows.scale_impulses(h / self.h);
         }
         self.h = h;
         self.response.refresh(m, ws);
+        self.rows.truncate(self.pairs.len());
         for (k, pair) in self.pairs.iter().enumerate() {
-            let mobility = self.response.row(m, ws, q, &pair.pushes, self.rows.response(k, 0));
+            let mobility = self.response.row(m, ws, pass.q, &pair.pushes, self.rows.response(k, 0));
             self.rows.row(k, 0).bias = pair.bias;
             if mobility.free > HELD * mobility.unlocked {
                 self.rows.seal(k);
@@ -122,12 +150,50 @@ impl Couplings {
                 self.rows.switch_off(k);
             }
         }
-        let solved = self.rows.solve(SWEEPS, AIM);
+        let mut contacts = self.contacts.as_mut().filter(|c| contacts && !c.is_empty());
+        let solved = match &mut contacts {
+            None => self.rows.solve(SWEEPS, AIM),
+            Some(c) => {
+                set.write_contests(m, ws, (&mut self.response, &mut self.rows), (pass.q, h, qdd));
+                let solved = c.solve(m, ws, (&mut self.response, &mut self.rows), pass, qdd);
+                set.take_contests(&mut self.response, &self.rows, h);
+                solved
+            }
+        };
         for k in 0..self.pairs.len() {
             self.push(k, self.rows.row_impulse(k) / h);
         }
-        self.response.apply(m, ws, q, qdd);
+        self.response.apply(m, ws, pass.q, qdd);
         solved.within(TOLERANCE)
+    }
+
+    /// The speeds to move with besides those that lead to `qdd`, so that nothing ends inside of something else: to `lift`
+    /// (nv). False if there are none.
+    fn lift(
+        &mut self,
+        m: &Model,
+        ws: &Workspace<f64>,
+        pass: &Pass,
+        (qdd, weight): (&[f64], &[f64]),
+        lift: &mut [f64],
+    ) -> bool {
+        let Self { contacts, rows, response, pairs, .. } = self;
+        let Some(contacts) = contacts.as_mut().filter(|c| !c.is_empty()) else { return false };
+        if !contacts.aim_lift(m, rows, pass, (qdd, weight)) {
+            return false;
+        }
+        for k in 0..pairs.len() {
+            *rows.lift(k) = Lift { kind: LiftKind::Exactly, bias: 0.0, impulse: 0.0 };
+        }
+        rows.solve_lifts(pass.sweeps, AIM);
+        contacts.push_lift(response, rows);
+        for (k, pair) in pairs.iter().enumerate() {
+            let force = rows.lift(k).impulse;
+            pair.pushes.iter().for_each(|push| response.push(push, force));
+        }
+        lift.fill(0.0);
+        response.velocity(m, ws, pass.q, lift);
+        true
     }
 
     fn push(&mut self, k: usize, force: f64) {
@@ -163,6 +229,9 @@ impl AxisSet {
     /// Reads how far the followers are from where their leaders put them at the start of an implicit step.
     pub(super) fn start_couplings(&mut self, m: &Model, start: &StepStart) {
         let Some(mut couplings) = self.couplings.take() else { return };
+        if let Some(contacts) = &mut couplings.contacts {
+            contacts.begin(m, (start.state.q, start.state.v), start.h);
+        }
         for pair in &mut couplings.pairs {
             let motion = |axis: usize| Motion { q: self.axis_state(m, &m.axes[axis], start.state).0, v: 0.0, a: 0.0 };
             let error = deviation(pair, &motion(pair.coupling.follower), &motion(pair.coupling.leader));
@@ -199,15 +268,23 @@ impl AxisSet {
 
     /// After a pass of an implicit step of `h` seconds: brings the ends of the step together, in `qdd` and `ws`. Returns how
     /// many couplings do not hold; then the laws have to be asked again.
-    pub(super) fn couple(&mut self, m: &Model, ws: &mut Workspace<f64>, s: StateRef, h: f64, qdd: &mut [f64]) -> usize {
-        let Some(mut couplings) = self.couplings.take() else { return 0 };
+    pub(super) fn couple(
+        &mut self,
+        m: &Model,
+        ws: &mut Workspace<f64>,
+        (s, v0): (StateRef, &[f64]),
+        h: f64,
+        qdd: &mut [f64],
+    ) -> usize {
+        let Some(mut couplings) = self.couplings.take_if(|c| !c.idle()) else { return 0 };
         for pair in &mut couplings.pairs {
             let (follower, leader, ratio) = self.motions(m, s, pair, qdd, false);
             pair.bias = follower.v + h * follower.a - ratio * (leader.v + h * leader.a) + pair.back;
             self.set_up(m, pair, (follower, leader, h));
         }
-        let converged = couplings.solve(m, ws, s.q, h, qdd);
-        let mut loose = usize::from(!converged);
+        let pass = Pass { q: s.q, v0, h, mean: self.mean, sweeps: self.sweeps };
+        let converged = couplings.solve(m, ws, (&pass, true), self, qdd);
+        let mut loose = usize::from(!converged && !couplings.pairs.is_empty());
         let mut forced = false;
         for k in 0..couplings.pairs.len() {
             let pair = couplings.pairs[k];
@@ -232,6 +309,23 @@ impl AxisSet {
         loose
     }
 
+    /// The speeds to move with in an implicit step of `h` besides those of its last pass at `q`, so that nothing ends inside of
+    /// something else: to `lift` (nv). False if there are none.
+    pub fn lift(
+        &mut self,
+        m: &Model,
+        ws: &Workspace<f64>,
+        (q, v0, qdd): (&[f64], &[f64], &[f64]),
+        h: f64,
+        lift: &mut [f64],
+    ) -> bool {
+        let Some(mut couplings) = self.couplings.take_if(|c| !c.idle()) else { return false };
+        let pass = Pass { q, v0, h, mean: self.mean, sweeps: self.sweeps };
+        let lifted = couplings.lift(m, ws, &pass, (qdd, &self.weight), lift);
+        self.couplings = Some(couplings);
+        lifted
+    }
+
     /// As `AxisSet::couple` in a stage of an explicit step: brings the accelerations together. False if the step is better
     /// made otherwise.
     ///
@@ -245,7 +339,7 @@ impl AxisSet {
         stage: Stage,
         qdd: &mut [f64],
     ) -> bool {
-        let Some(mut couplings) = self.couplings.take() else { return true };
+        let Some(mut couplings) = self.couplings.take_if(|c| !c.pairs.is_empty()) else { return true };
         let h = stage.h;
         for pair in &mut couplings.pairs {
             let (follower, leader, ratio) = self.motions(m, s, pair, qdd, true);
@@ -257,7 +351,8 @@ impl AxisSet {
             pair.bias = h * (follower.a - ratio * leader.a + pair.back);
             self.set_up(m, pair, (follower, leader, h));
         }
-        let converged = couplings.solve(m, ws, s.q, h, qdd);
+        let pass = Pass { q: s.q, v0: s.v, h, mean: true, sweeps: SWEEPS };
+        let converged = couplings.solve(m, ws, (&pass, false), self, qdd);
         let held = |k: usize| couplings.rows.is_off(k) && couplings.pairs[k].bias.abs() > couplings.pairs[k].slack;
         let loose = (0..couplings.pairs.len()).any(held);
         self.agree((m, ws), &couplings, qdd, |_, _, a| a, |_, _, end| end);

@@ -11,6 +11,7 @@ impl AxisSet {
     pub fn refit(&mut self, m: &Model) {
         self.rates.resize(m.eulers.len(), Default::default());
         self.weight.resize(m.nv, 1.0);
+        self.paid.resize(m.axes.len() + m.softs.len(), (0.0, 0.0));
         self.couplings = Couplings::new(m);
         self.answers = Some(Box::new(Answers::new(m)));
         for (i, axis) in m.axes.iter().enumerate() {

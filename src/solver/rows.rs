@@ -5,6 +5,11 @@ use super::cone::{ConeBlock, Plane, disc};
 
 /// Numbers in a chunk of w.
 pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
+/// A visit of a block stays near what it had before, by this share of its trace: that moves no solution, and a block that is
+/// held in some direction has one.
+const NEAR: f64 = 1e-9;
+/// A contact whose normal moves by less than this share of its tangents is held.
+const DEAD: f64 = 1e-12;
 /// More rows than this are left to the iteration: the direct finish costs their cube.
 pub const FINISH_ROWS: usize = 60;
 
@@ -60,6 +65,8 @@ pub(super) struct Block {
     /// Start of its numbers.
     pub values: usize,
     pub inner: Inner,
+    /// Of a contact that slides: velocity against impulse, from the last visit.
+    pub slip: f64,
 }
 
 /// The block's own part of `Y Yᵀ + R`.
@@ -101,6 +108,7 @@ pub struct Rows {
     pub(super) values: Vec<f64>,
     pub(super) w: Vec<f64>,
     pub(super) finish: super::finish::Scratch,
+    pub(super) lifts: super::lifts::Lifts,
 }
 
 impl Rows {
@@ -113,6 +121,7 @@ impl Rows {
             values: vec![],
             w: vec![0.0; width],
             finish: Default::default(),
+            lifts: super::lifts::Lifts::new(width),
         }
     }
 
@@ -123,9 +132,20 @@ impl Rows {
         self.ids.extend_from_slice(ids);
         self.values.resize(values + rows * ids.len() * CHUNK, 0.0);
         self.rows.resize(first + rows, Row::default());
-        self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off });
-        self.finish.make_room(self.blocks.len(), self.rows.len());
+        self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off, slip: 0.0 });
+        self.finish.make_room(self.rows.len());
+        self.lifts.add();
         self.blocks.len() - 1
+    }
+
+    /// Drops the blocks from this index on and keeps their memory: adding as many again allocates nothing.
+    pub fn truncate(&mut self, blocks: usize) {
+        let Some(b) = self.blocks.get(blocks) else { return };
+        self.rows.truncate(b.first);
+        self.ids.truncate(b.ids.start);
+        self.values.truncate(b.values);
+        self.blocks.truncate(blocks);
+        self.lifts.truncate(blocks);
     }
 
     /// Chunks of a block, and the numbers of its row `n` in them.
@@ -139,6 +159,16 @@ impl Rows {
     /// Row `n` of a block.
     pub fn row(&mut self, block: usize, n: usize) -> &mut Row {
         &mut self.rows[self.blocks[block].first + n]
+    }
+
+    /// Index of the first row of a block.
+    pub fn first_row(&self, block: usize) -> usize {
+        self.blocks[block].first
+    }
+
+    /// Impulse of row `n` of a block.
+    pub fn impulse(&self, block: usize, n: usize) -> f64 {
+        self.rows[self.blocks[block].first + n].impulse
     }
 
     /// Impulse of the only row of a block.
@@ -184,6 +214,11 @@ impl Rows {
         dot(y(i), y(k)) + softness
     }
 
+    /// Trace of a block's own part of `Y Yᵀ + R`.
+    pub fn trace(&self, block: usize) -> f64 {
+        self.blocks[block].inner.trace()
+    }
+
     /// Forgets all impulses.
     pub fn reset(&mut self) {
         for row in &mut self.rows {
@@ -212,10 +247,8 @@ impl Rows {
             }
         }
         solved.residual = self.residual();
-        let bounded = |b: &Block| matches!(b.kind, Kind::Bounds { .. });
-        let direct = self.rows.len() <= FINISH_ROWS && self.blocks.iter().any(bounded);
-        if solved.residual > wanted && direct {
-            (solved.residual, solved.tries) = self.finish(solved.residual, wanted);
+        if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
+            (solved.residual, solved.tries) = self.finish(solved.residual, wanted, solved.scale);
         }
         solved
     }
@@ -240,14 +273,27 @@ impl Rows {
         self.blocks.iter().filter(|b| !b.is_off()).map(size).fold(0.0, f64::max)
     }
 
+    /// Σ x·(bias + y·w/2) for the w of [`Rows::gather`].
+    pub(super) fn work(&self) -> f64 {
+        let of = |b: &Block, n: usize| {
+            let row = &self.rows[b.first + n];
+            row.impulse * (row.bias + 0.5 * self.reach(b, n))
+        };
+        self.blocks.iter().filter(|b| !b.is_off()).map(|b| (0..b.rows).map(|n| of(b, n)).sum::<f64>()).sum()
+    }
+
     /// `y·w`.
     #[inline(always)]
     pub(super) fn reach(&self, b: &Block, n: usize) -> f64 {
-        let length = b.ids.len() * CHUNK;
-        let y = &self.values[b.values + n * length..b.values + (n + 1) * length];
+        self.reach_of(&self.w, b, n)
+    }
+
+    /// `y·w` of a row, with another w.
+    #[inline(always)]
+    pub(super) fn reach_of(&self, w: &[f64], b: &Block, n: usize) -> f64 {
         let mut sum = [0.0; CHUNK];
-        for (id, y) in self.ids[b.ids.clone()].iter().zip(y.chunks_exact(CHUNK)) {
-            let w = &self.w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
+        for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).chunks_exact(CHUNK)) {
+            let w = &w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
             for k in 0..CHUNK {
                 sum[k] += y[k] * w[k];
             }
@@ -258,18 +304,48 @@ impl Rows {
     /// `w += y x`.
     #[inline(always)]
     pub(super) fn push(&mut self, block: usize, n: usize, x: f64) {
+        let mut w = std::mem::take(&mut self.w);
+        self.push_into(&mut w, &self.blocks[block], n, x);
+        self.w = w;
+    }
+
+    /// `w += y x`, of another w.
+    #[inline(always)]
+    pub(super) fn push_into(&self, w: &mut [f64], b: &Block, n: usize, x: f64) {
         if x == 0.0 {
             return;
         }
-        let b = &self.blocks[block];
-        let length = b.ids.len() * CHUNK;
-        let y = &self.values[b.values + n * length..b.values + (n + 1) * length];
-        for (id, y) in self.ids[b.ids.clone()].iter().zip(y.chunks_exact(CHUNK)) {
-            let w = &mut self.w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
+        for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).chunks_exact(CHUNK)) {
+            let w = &mut w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
             for k in 0..CHUNK {
                 w[k] += y[k] * x;
             }
         }
+    }
+
+    /// The numbers of a row, in the order of its chunks.
+    #[inline(always)]
+    pub(super) fn numbers(&self, b: &Block, n: usize) -> &[f64] {
+        let length = b.ids.len() * CHUNK;
+        &self.values[b.values + n * length..b.values + (n + 1) * length]
+    }
+
+    /// `y_a·y_b` of two rows, each given by its block and its number in it.
+    pub(super) fn between(&self, (a, n): (&Block, usize), (b, m): (&Block, usize)) -> f64 {
+        let (x, y) = (self.numbers(a, n).chunks_exact(CHUNK), self.numbers(b, m).chunks_exact(CHUNK));
+        let (mut x, mut y) = (self.ids[a.ids.clone()].iter().zip(x), self.ids[b.ids.clone()].iter().zip(y));
+        let (mut i, mut k, mut sum) = (x.next(), y.next(), 0.0);
+        while let (Some((p, own)), Some((q, other))) = (i, k) {
+            match p.cmp(q) {
+                std::cmp::Ordering::Less => i = x.next(),
+                std::cmp::Ordering::Greater => k = y.next(),
+                std::cmp::Ordering::Equal => {
+                    sum += own.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+                    (i, k) = (x.next(), y.next());
+                }
+            }
+        }
+        sum
     }
 
     /// Velocity of a row with all impulses, what its softness gives way included.
@@ -291,11 +367,16 @@ fn single(h: f64) -> Inner {
 }
 
 fn pair([a, b, d]: [f64; 3]) -> Inner {
-    if a * d - b * b > 0.0 && a > 0.0 { Inner::Pair(Plane::new(a, b, d), a + d) } else { Inner::Off }
+    let (trace, more) = (a + d, NEAR * (a + d));
+    if trace > 0.0 { Inner::Pair(Plane::new(a + more, b, d + more), trace) } else { Inner::Off }
 }
 
+/// A contact that gives way along its normal takes part, also where it is held along a tangent.
 fn cone(h: [f64; 6]) -> Inner {
-    if h[0] > 0.0 && h[3] > 0.0 && h[5] > 0.0 { Inner::Cone(ConeBlock::new(h)) } else { Inner::Off }
+    let trace = h[0] + h[3] + h[5];
+    let more = NEAR * trace;
+    let near = [h[0] + more, h[1], h[2], h[3] + more, h[4], h[5] + more];
+    if h[0] > DEAD * trace { Inner::Cone(ConeBlock::new(near)) } else { Inner::Off }
 }
 
 /// Of two rows over the same chunks.

@@ -33,12 +33,11 @@ impl AxisSet {
     /// Adds the work of a step from the velocities `v` with these accelerations to what was taken from the robot: what a spring
     /// stores, it may give back.
     pub fn add_soft_work(&mut self, m: &Model, ws: &Workspace<f64>, v: &[f64], (h, qdd): (f64, &[f64])) {
-        for soft in &m.softs {
+        for (k, soft) in m.softs.iter().enumerate() {
             let (input, a) = (&ws.dofs[soft.v], qdd[soft.v]);
             let force = if input.free > 0.0 { input.tau - input.diagonal * a } else { ws.reaction[soft.v] };
             let (start, end) = (v[soft.v], v[soft.v] + h * a);
-            self.paid.0 += 0.5 * h * force * start;
-            self.paid.1 += 0.5 * h * force * end;
+            self.paid[m.axes.len() + k] = (0.5 * h * force * start, 0.5 * h * force * end);
             self.work.losses -= 0.5 * h * force * (start + end);
         }
     }

@@ -1,6 +1,7 @@
 //! Time: states, steps, reset, copies. No ROS, no files, no wall clock.
 
 mod breaking;
+mod contact;
 mod drive;
 mod pose;
 mod settings;
@@ -14,9 +15,10 @@ use std::sync::Arc;
 
 pub use crate::solver::{AxisCommand, Mode, Work};
 pub use breaking::Broken;
+pub use contact::ContactPoint;
 pub use pose::Side;
 pub use settings::{Integrator, Settings};
-pub use snapshot::Snapshot;
+pub use snapshot::{SHOWN_CONTACTS, Snapshot, Wrench};
 
 /// Counters since the start; none of them is ever reset by a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,6 +38,10 @@ pub struct Stats {
     pub guarded_energy: f64,
     /// By how much an axis was outside its range at most (a soft stop, a start there, an angle of a 3DOF group); rad or m.
     pub worst_stop_violation: f64,
+    /// Energy that steps in contact would have made out of nothing, and that was taken out of the velocities, J.
+    pub trimmed_energy: f64,
+    /// The deepest penetration of two bodies at the start or the end of a step, m.
+    pub worst_penetration: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
     pub pole_steps: u64,
     /// Steps whose result was not finite and was not taken. The world stands still from the first one on.
@@ -61,6 +67,7 @@ pub struct World {
     /// Part of a nanosecond that the time scale has left over.
     rest_ns: f64,
     stats: Stats,
+    contacts: Vec<ContactPoint>,
 }
 
 impl World {
@@ -86,6 +93,7 @@ impl World {
             stamp_ns: 0,
             rest_ns: 0.0,
             stats: Stats::default(),
+            contacts: vec![],
         };
         world.reset();
         Ok(world)
@@ -208,6 +216,7 @@ impl World {
         s.halvings += u64::from(report.halvings);
         s.guarded_pieces += u64::from(report.guarded);
         s.guarded_energy += report.guarded_energy;
+        s.trimmed_energy += report.trimmed_energy;
         s.worst_stop_violation = self.engine.axes.worst_stop;
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
@@ -224,7 +233,7 @@ impl World {
         if let Some(model) = self.unmoved.take() {
             self.model = model;
         }
-        self.engine.restart(&self.initial);
+        self.engine.restart(&self.model, &self.initial);
         for (i, axis) in self.model.axes.iter().enumerate() {
             self.commands[i] = match axis.mode {
                 Mode::Idle => AxisCommand::IDLE,
@@ -239,6 +248,9 @@ impl World {
 
     fn update(&mut self) {
         kinematics(&self.model, &mut self.kinematics, &self.engine.state.q, &self.engine.state.v);
+        if self.engine.axes.contacts().is_some() {
+            self.show_contacts();
+        }
     }
 
     /// A snapshot with all buffers at their size.
@@ -251,6 +263,8 @@ impl World {
             link_pose: vec![Pose::identity(); links],
             link_twist: vec![Twist::default(); links],
             cut_off: vec![false; links],
+            contacts: Vec::with_capacity(SHOWN_CONTACTS),
+            link_wrench: vec![Wrench::default(); links],
             broken: Vec::with_capacity(self.breaking.intact.breakables.len()),
             ..Snapshot::default()
         };
@@ -268,11 +282,12 @@ impl World {
         s.effort.copy_from_slice(&self.engine.axes.effort);
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
-            s.cut_off[link] = link != m.root_link && m.links[link].parent.is_none();
+            s.cut_off[link] = m.links[link].parent.is_none() && !m.is_root(link);
             s.link_twist[link] = link_twist(m, &self.kinematics, (&state.q, &state.v), &state.angles, link);
         }
         let e = self.energy();
         (s.kinetic_energy, s.potential_energy) = (e.kinetic, e.potential);
+        s.take_contacts(m, &self.contacts);
         s.stats = self.stats;
         s.broken.clear();
         s.broken.extend_from_slice(self.broken());

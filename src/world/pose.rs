@@ -73,7 +73,7 @@ impl World {
             Some(body) => self.move_floating(body, motion),
             None => {
                 self.unmoved.get_or_insert_with(|| self.model.clone());
-                Arc::make_mut(&mut self.model).move_fixed_base(motion);
+                Arc::make_mut(&mut self.model).move_fixed_base(axis, motion);
             }
         }
     }

@@ -1,6 +1,20 @@
 //! What a world shows after an interval. All buffers are made once; writing a snapshot allocates nothing.
 
-use crate::math::{Pose, Twist};
+use super::ContactPoint;
+use crate::math::{Pose, Twist, Vec3};
+use crate::model::Model;
+
+/// Contacts that a snapshot has room for.
+pub const SHOWN_CONTACTS: usize = 256;
+
+/// What acts on a link through its contacts, in the world frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// N.
+    pub force: Vec3,
+    /// About the origin of the link, N·m.
+    pub torque: Vec3,
+}
 
 /// The state of a world at one instant.
 #[derive(Clone, Debug, Default)]
@@ -27,8 +41,33 @@ pub struct Snapshot {
     pub kinetic_energy: f64,
     /// J, zero with every centre of mass at the world's origin height.
     pub potential_energy: f64,
+    /// The first [`SHOWN_CONTACTS`] contacts.
+    pub contacts: Vec<ContactPoint>,
+    /// How many there are beyond these.
+    pub omitted_contacts: usize,
+    /// Per link: sum of the forces of all its contacts in the last step.
+    pub link_wrench: Vec<Wrench>,
     /// Counters.
     pub stats: super::Stats,
     /// False once the world has diverged and stands still.
     pub finite: bool,
+}
+
+impl Snapshot {
+    /// Takes the contacts, and what they do to the links, whose poses are already here.
+    pub(super) fn take_contacts(&mut self, m: &Model, contacts: &[ContactPoint]) {
+        self.contacts.clear();
+        self.contacts.extend(contacts.iter().take(SHOWN_CONTACTS));
+        self.omitted_contacts = contacts.len() - self.contacts.len();
+        self.link_wrench.fill(Wrench::default());
+        for c in contacts {
+            for (collider, force) in c.colliders.into_iter().zip([-c.force, c.force]) {
+                let Some(link) = m.colliders[collider].link else { continue };
+                let arm = c.point - self.link_pose[link].translation.vector;
+                let w = &mut self.link_wrench[link];
+                w.force += force;
+                w.torque += arm.cross(&force);
+            }
+        }
+    }
 }

@@ -105,13 +105,22 @@ def test_the_comparison_of_outputs_can_fail():
 
 
 def test_the_scene_of_the_readme_is_accepted(tmp_path):
-    scene, script = blocks("yaml")
+    scene, script, _ = blocks("yaml")
     (tmp_path / "scene.yaml").write_text(scene)
     (tmp_path / "commands.yaml").write_text(script)
     command = [BINARY, "simulate", ROOT / "urdf/origin.urdf", "--scene", tmp_path / "scene.yaml", "--duration", "1"]
     result = subprocess.run([*command, "--script", tmp_path / "commands.yaml"], capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
     assert not any("commands.yaml" in warning for warning in json.loads(result.stdout)["warnings"])
+
+
+def test_the_world_of_the_readme_runs(tmp_path):
+    world = blocks("yaml")[2].replace("urdf/leg.urdf", f"{ROOT}/urdf/leg.urdf")
+    (tmp_path / "scene.yaml").write_text(world)
+    command = [BINARY, "simulate", ROOT / "urdf/origin.urdf", "--scene", tmp_path / "scene.yaml", "--duration", "0.2"]
+    result = subprocess.run(command, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    assert json.loads(result.stdout)["contacts"] > 0
 
 
 def test_every_program_and_script_in_shell_blocks_is_there():

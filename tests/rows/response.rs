@@ -11,15 +11,15 @@ use realnoid::model::{JointType, Model};
 const GRAVITY: [f64; 3] = [0.3, -0.2, -9.81];
 
 /// A model with a state and inputs of the hybrid dynamics: free ones, diagonals and locks of all kinds.
-struct Case {
-    m: Model,
-    q: Vec<f64>,
+pub struct Case {
+    pub m: Model,
+    pub q: Vec<f64>,
     v: Vec<f64>,
-    ws: Workspace<f64>,
-    qdd: Vec<f64>,
+    pub ws: Workspace<f64>,
+    pub qdd: Vec<f64>,
 }
 
-fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<Case> {
     let mixed = |s: u64| tree(&(0..12).map(|i| ALL[(i + s as usize) % 5]).collect::<Vec<_>>(), s.is_multiple_of(3), s);
     let mut models: Vec<Model> = (0..20).map(mixed).collect();
     models.extend(ALL.map(|j| tree(&[j; 6], true, 77)));
@@ -124,7 +124,7 @@ impl Case {
         })
     }
 
-    fn push(&self, rng: &mut Random) -> Push {
+    pub fn push(&self, rng: &mut Random) -> Push {
         let body = 1 + rng.next() as usize % (self.m.bodies.len() - 1);
         let mut push = Push { body, ..Push::default() };
         if rng.next().is_multiple_of(2) {

@@ -57,6 +57,8 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         breakables: vec![],
         chains: vec![],
         rigs: vec![],
+        dampings: vec![],
+        joined: vec![],
         colliders: vec![],
         excluded_pairs: vec![],
         effects: Effects { gravity: true, drives: true, ..Effects::NONE },
@@ -107,6 +109,7 @@ fn add_axes(m: &mut Model) {
         fixed: true,
         monitor: None,
         membership: None,
+        deactivation: None,
         mass: 0.0,
         frame: LinkFrame::OnBody { body: 0, offset: realnoid::math::Pose::identity() },
     });

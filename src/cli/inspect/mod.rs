@@ -4,18 +4,21 @@ mod groups;
 mod json;
 mod tables;
 mod values;
+mod world;
 
 use super::args::InspectArgs;
 use super::base_by_name;
 use super::drawing::draw_robot;
-use super::load::load_or_say;
+use super::load::{Loaded, load_or_say};
+use super::scene::{Fault, Scene, Spare, assemble};
+use crate::model::Model;
 use std::process::ExitCode;
 pub use values::Unit;
 
 /// Prints tables, values in full, JSON, or the URDF with inertials.
 pub fn run(args: &InspectArgs) -> ExitCode {
-    let loaded = match load_or_say(args.packages.source(args.urdf.as_deref()), base_by_name(&args.base)) {
-        Ok(loaded) => loaded,
+    let (loaded, world) = match read(args) {
+        Ok(both) => both,
         Err(failure) => return failure,
     };
     if let Some(file) = &args.svg
@@ -28,11 +31,37 @@ pub fn run(args: &InspectArgs) -> ExitCode {
     let text = if args.urdf_with_inertials {
         loaded.published
     } else if args.json {
-        format!("{:#}\n", json::json(&loaded))
+        let mut all = json::json(&loaded);
+        if let Some(m) = &world {
+            all["world"] = world::json(m);
+        }
+        format!("{all:#}\n")
     } else if args.full {
         values::full(&loaded, unit)
     } else {
-        tables::tables(&loaded, unit)
+        tables::tables(&loaded, unit) + &world.as_ref().map(world::table).unwrap_or_default()
     };
     super::say(&text)
+}
+
+/// The robot and, of a scene, everything.
+fn read(args: &InspectArgs) -> Result<(Loaded, Option<Model>), ExitCode> {
+    let source = args.packages.source(args.urdf.as_deref());
+    if args.scene.is_none() && !args.ground {
+        return Ok((load_or_say(source, base_by_name(&args.base))?, None));
+    }
+    let said = |code: u8, reason: &str| {
+        eprintln!("error: {}", reason.trim_end());
+        ExitCode::from(code)
+    };
+    let mut scene = Scene::read(args.scene.as_deref()).map_err(|reason| said(2, &reason))?;
+    if args.ground {
+        scene.lay_ground();
+    }
+    let stand = (scene.base.unwrap_or(base_by_name(&args.base)), scene.robot.pose);
+    match assemble(&scene, source, stand, Spare::Humanoid, &|m| scene.switch_effects(m)) {
+        Ok(all) => Ok((all.first, Some(all.model))),
+        Err(Fault::Robot(report)) => Err(said(1, &report)),
+        Err(Fault::Scene(reason)) => Err(said(2, &reason)),
+    }
 }

@@ -14,6 +14,24 @@ pub struct TwistStamped {
     pub twist: Twist,
 }
 
+/// geometry_msgs/Wrench.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Wrench {
+    /// N.
+    pub force: Vector3,
+    /// N·m.
+    pub torque: Vector3,
+}
+
+/// geometry_msgs/WrenchStamped: at the origin of a link, along the axes of `header.frame_id`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct WrenchStamped {
+    /// Stamp and frame.
+    pub header: Header,
+    /// The wrench.
+    pub wrench: Wrench,
+}
+
 /// geometry_msgs/Transform.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Transform {

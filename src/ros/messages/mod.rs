@@ -7,7 +7,7 @@ mod standard;
 mod tf2;
 
 pub use diagnostic::{DiagnosticArray, DiagnosticStatus, KeyValue, Level};
-pub use geometry::{Quaternion, Transform, TransformStamped, Twist, TwistStamped, Vector3};
+pub use geometry::{Quaternion, Transform, TransformStamped, Twist, TwistStamped, Vector3, Wrench, WrenchStamped};
 pub use sensor::JointState;
 pub use standard::{Clock, Float64MultiArray, Header, MultiArrayDimension, MultiArrayLayout, StringMessage, Time};
 pub use tf2::TFMessage;

@@ -20,6 +20,7 @@ pub fn show(value: &ParameterValue) -> String {
         ParameterValue::Boolean(b) => b.to_string(),
         ParameterValue::Integer(i) => i.to_string(),
         ParameterValue::Double(d) => format!("{d:?}"),
+        ParameterValue::String(s) if s.is_empty() => "''".into(),
         ParameterValue::String(s) => s.clone(),
         ParameterValue::ByteArray(a) => list(a, u8::to_string),
         ParameterValue::BooleanArray(a) => list(a, bool::to_string),

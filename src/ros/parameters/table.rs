@@ -92,10 +92,16 @@ fn start_parameters() -> Vec<Definition> {
         define("engine", V::String("rbx".into()), Range::OneOf(&["rbx"]), "", Start).doc("Dynamics engine."),
         define("base", V::String("fixed".into()), Range::OneOf(&["fixed", "free"]), "", Start)
             .doc("fixed: the root link is held on a test stand; free: it has six degrees of freedom."),
+        define("scene", V::String(String::new()), Range::Any, "", Start)
+            .doc("Scene file (YAML): robots, bodies and the ground beside the robot, and world settings that parameters given win over."),
+        define("ground", V::Boolean(false), Range::Any, "", Start)
+            .doc("The flat ground z = 0, where the scene has none of its own."),
         define("axes", V::StringArray(vec![]), Range::Any, "", Never)
             .doc("Axis names in the order of effort_command and servo_command; from the URDF."),
-        define("start", V::String("hold".into()), Range::OneOf(&["hold", "free"]), "", Start)
-            .doc("hold: every axis whose drive may switch servos at its initial position until it is commanded; free: each axis starts in the mode of its <drive> tag."),
+        define("start", V::String("hold".into()), Range::OneOf(&["hold", "free", "paused"]), "", Start)
+            .doc("hold: every axis whose drive may switch servos at its initial position until it is commanded; free: each axis starts in the mode of its <drive> tag; paused: as hold, and time stands until paused is set to false."),
+        define("paused", V::Boolean(false), Range::Any, "", Always)
+            .doc("Time stands still; /clock, /tf and the topics of the state are repeated all the same."),
         define("allow_mode_switch", V::Boolean(true), Range::Any, "", Always)
             .doc("May a command switch an axis between idle, torque and servo mode? The switchable attribute of its <drive> tag must allow it, too."),
     ]

@@ -14,13 +14,16 @@ pub(super) const INTEGRATORS: [&str; 3] = [Integrator::NAMES[0].0, Integrator::N
 pub struct Values {
     definitions: Vec<Definition>,
     values: Vec<V>,
+    /// Set before the start.
+    given: Vec<bool>,
 }
 
 impl Default for Values {
     fn default() -> Self {
         let definitions = table();
         let values = definitions.iter().map(|d| d.default.clone()).collect();
-        Self { definitions, values }
+        let given = vec![false; definitions.len()];
+        Self { definitions, values, given }
     }
 }
 
@@ -44,7 +47,49 @@ impl Values {
         }
         let value = widen(value, &definition.default);
         definition.check(&value)?;
-        self.replace(index, value)
+        self.replace(index, value)?;
+        self.given[index] = true;
+        Ok(())
+    }
+
+    /// Takes settings from a scene, where they were not given as parameters. `Err`: the world does not accept them together.
+    pub fn adopt(&mut self, settings: &Settings, names: &[&'static str]) -> Result<(), String> {
+        for name in names {
+            let index = self.index(name)?;
+            let value = match *name {
+                "control_interval" => V::Double(settings.control_interval_ns as f64 * 1e-9),
+                "steps_per_interval" => V::Integer(settings.steps_per_interval.into()),
+                "solver_iterations" => V::Integer(settings.solver_iterations.into()),
+                "time_scale" => V::Double(settings.time_scale),
+                "gravity" => V::DoubleArray(settings.gravity.to_vec()),
+                "integrator" => V::String(settings.integrator.name().into()),
+                _ => continue,
+            };
+            if !self.given[index] {
+                self.replace(index, value)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// True if the parameter was set before the start.
+    pub fn is_given(&self, name: &str) -> bool {
+        self.index(name).is_ok_and(|index| self.given[index])
+    }
+
+    /// `start: paused` is `paused: true` from the start.
+    pub fn pause_at_start(&mut self) -> Result<(), String> {
+        if self.text("start") == "paused" { self.set_running("paused", V::Boolean(true)) } else { Ok(()) }
+    }
+
+    /// Parameter `scene`; `None` if there is none.
+    pub fn scene(&self) -> Option<&std::path::Path> {
+        Some(self.text("scene")).filter(|s| !s.is_empty()).map(std::path::Path::new)
+    }
+
+    /// Parameter `ground`.
+    pub fn ground(&self) -> bool {
+        *self.value("ground") == V::Boolean(true)
     }
 
     /// Sets a parameter of a running node. `Err` says what is wrong with it; nothing has changed then.
@@ -92,6 +137,7 @@ impl Values {
         };
         Pace {
             settings,
+            paused: *self.value("paused") == V::Boolean(true),
             real_time_factor: self.double("real_time_factor"),
             max_catch_up: self.integer("max_catch_up") as u32,
         }
@@ -104,7 +150,7 @@ impl Values {
 
     /// Parameter `start`: do the axes hold their initial position?
     pub fn hold_at_start(&self) -> bool {
-        self.text("start") == "hold"
+        self.text("start") != "free"
     }
 
     /// Parameter `allow_mode_switch`.

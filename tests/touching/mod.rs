@@ -1,0 +1,117 @@
+//! Scenes with contacts, built by hand.
+#![allow(dead_code)] // each test uses a part
+
+use realnoid::description;
+use realnoid::mass::link_bodies;
+use realnoid::math::Pose;
+use realnoid::model::{Base, Collider, Model, Surface};
+use realnoid::shape::{ContactForm, Meshes};
+use realnoid::world::{Integrator, Settings, World};
+use std::path::Path;
+use std::sync::Arc;
+
+pub fn model(urdf: &str, base: Base) -> Model {
+    let d = description::read(urdf, "test.urdf").description.unwrap();
+    let (bodies, _) = link_bodies(&d, &Meshes::beside(Path::new("."), &[]));
+    let masses: Vec<_> = bodies.iter().map(|b| b.simulated).collect();
+    Model::build(&d, &masses, base, Pose::identity())
+}
+
+pub fn surface(friction: f64) -> Surface {
+    Surface { friction, ..Surface::default() }
+}
+
+pub fn ground(friction: f64) -> Collider {
+    Collider {
+        name: "ground".into(),
+        link: None,
+        pose: Pose::identity(),
+        form: ContactForm::HalfSpace,
+        surface: surface(friction),
+        margin: 0.0,
+    }
+}
+
+pub fn on_link(m: &Model, link: &str, form: ContactForm, surface: Surface) -> Collider {
+    let link = m.links.iter().position(|l| l.name == link).unwrap();
+    Collider { name: m.links[link].name.clone(), link: Some(link), pose: Pose::identity(), form, surface, margin: 0.0 }
+}
+
+pub fn settings(h: f64, integrator: Integrator) -> Settings {
+    Settings {
+        control_interval_ns: (h * 1e9).round() as i64,
+        steps_per_interval: 1,
+        integrator,
+        gravity: [0.0, 0.0, -9.81],
+        ..Settings::default()
+    }
+}
+
+/// One free body of this mass and inertia.
+pub fn free_body(mass: f64, inertia: [f64; 3]) -> Model {
+    let [x, y, z] = inertia;
+    let urdf = format!(
+        r#"<robot name="r"><link name="b"><inertial><mass value="{mass}"/><inertia ixx="{x}" iyy="{y}" izz="{z}" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"#
+    );
+    model(&urdf, Base::Free)
+}
+
+pub fn ball(mass: f64, radius: f64, own: Surface, floor: Collider) -> Model {
+    let i = 0.4 * mass * radius * radius;
+    let mut m = free_body(mass, [i; 3]);
+    let c = on_link(&m, "b", ContactForm::Ball { radius }, own);
+    m.set_colliders(vec![floor, c]);
+    m
+}
+
+pub fn cuboid(mass: f64, half: [f64; 3], own: Surface, floor: Collider) -> Model {
+    let [x, y, z] = half.map(|h| 4.0 * h * h);
+    let mut m = free_body(mass, [mass * (y + z) / 12.0, mass * (x + z) / 12.0, mass * (x + y) / 12.0]);
+    let c = on_link(&m, "b", ContactForm::Cuboid { half }, own);
+    m.set_colliders(vec![floor, c]);
+    m
+}
+
+pub fn world(m: Model, settings: Settings) -> World {
+    World::new(Arc::new(m), settings).unwrap()
+}
+
+/// Free balls (mass, radius), one link each: b0, b1, …, on a floor.
+pub fn balls(list: &[(f64, f64)], own: Surface, floor: Collider) -> Model {
+    let mut urdf = String::from(r#"<robot name="r"><link name="w"/>"#);
+    for (k, (mass, radius)) in list.iter().enumerate() {
+        let i = 0.4 * mass * radius * radius;
+        urdf += &format!(
+            r#"<link name="b{k}"><inertial><mass value="{mass}"/><inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial></link>
+               <joint name="j{k}" type="floating"><parent link="w"/><child link="b{k}"/></joint>"#
+        );
+    }
+    urdf += "</robot>";
+    let mut m = model(&urdf, Base::Fixed);
+    let mut colliders = vec![floor];
+    for (k, (_, radius)) in list.iter().enumerate() {
+        colliders.push(on_link(&m, &format!("b{k}"), ContactForm::Ball { radius: *radius }, own));
+    }
+    m.set_colliders(colliders);
+    m
+}
+
+/// A robot from a file, with the spheres of its `<collision>` elements on the ground.
+pub fn feet(path: &str, friction: f64) -> Model {
+    use realnoid::description::Geometry;
+    let text = std::fs::read_to_string(path).unwrap();
+    let d = description::read(&text, path).description.unwrap();
+    let mut m = model(&text, Base::Free);
+    let mut colliders = vec![ground(friction)];
+    for link in &d.links {
+        for c in &link.collisions {
+            if let Geometry::Sphere { radius } = c.geometry {
+                let pose = c.origin.pose();
+                let collider = on_link(&m, &link.name, ContactForm::Ball { radius }, surface(1.0));
+                colliders.push(Collider { pose, ..collider });
+            }
+        }
+    }
+    m.set_colliders(colliders);
+    m
+}
