@@ -248,7 +248,7 @@ fn a_triangulated_floor_is_flat() {
         (ContactForm::Capsule { bottom: 0.05, top: 0.05, half: 0.2 }, 0.05, 2),
         (ContactForm::Cuboid { half: [0.12, 0.07, 0.1] }, 0.1, 4),
     ] {
-        let mut scene = Scene::new(&[form.clone()]);
+        let mut scene = Scene::new(std::slice::from_ref(&form));
         scene.model.colliders.push(collider(level.clone(), None, Pose::identity()));
         let mut detector = Detector::new(&scene.model).unwrap();
         for step in 0..2000 {

@@ -149,6 +149,51 @@ fn every_pair_is_certified_by_its_normal() {
     assert!(overlaps > 300, "{overlaps}");
 }
 
+/// Shapes that are apart, moved along their nearest line until they just touch: the gap is what is left, the direction
+/// stays. This is where things rest, and where a search for nearest points has the least to go by.
+#[test]
+fn touching_shapes_have_the_gap_that_was_left() {
+    let mut rng = Random(12);
+    for _ in 0..60 {
+        let list = forms(&mut rng);
+        for (i, a) in list.iter().enumerate() {
+            for b in &list[i..] {
+                let mut scene = Scene::new(&[a.clone(), b.clone()]);
+                let mut detector = Detector::new(&scene.model).unwrap();
+                let (x, mut y) = (pose(&mut rng, 0.1), pose(&mut rng, 0.1));
+                y.translation.vector += rng.vec3(1.0).normalize() * 0.8;
+                scene.place(0, x);
+                scene.place(1, y);
+                let nearest = |scene: &mut Scene, detector: &mut Detector| {
+                    let touches = scene.all(detector);
+                    let placed = touches.iter().map(|t| t.placed(&scene.k));
+                    placed.min_by(|p, q| p.gap.total_cmp(&q.gap)).unwrap()
+                };
+                let far = nearest(&mut scene, &mut detector);
+                let n = Vec3::from(far.normal);
+                for left in [1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 0.0, -1e-12, -1e-9, -1e-7, -1e-5, -1e-4] {
+                    let mut at = y;
+                    at.translation.vector -= n * (far.gap - left);
+                    scene.place(1, at);
+                    let here = nearest(&mut scene, &mut detector);
+                    // A face is preferred up to 1e-6 of the size of the smaller shape, which is below 0.5 m.
+                    let slack = 5e-7;
+                    let error = here.gap - left;
+                    // Corners that overlap may come apart over a shorter way than the one they came.
+                    let more = if left < 0.0 { -left } else { 0.02 * left };
+                    let fine = error > -slack - 0.02 * left.abs() && error < slack + more;
+                    assert!(fine, "{a:?}\n{b:?}\n{left}: {}", here.gap);
+                    // At a corner a direction that is off by θ changes a gap g by g·θ²/2 alone.
+                    let off = (Vec3::from(here.normal) - n).norm();
+                    if left > 1e-6 {
+                        assert!(off < 1e-3 + (2.0 * slack / left).sqrt(), "{a:?}\n{b:?}\n{left}: {off} {}", here.gap);
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// A ball is a cuboid of no size with a radius, a capsule one of no width: the search must say what the closed forms say.
 #[test]
 fn search_and_closed_forms_agree() {
@@ -295,5 +340,8 @@ fn degenerate_input_gives_numbers() {
     let mut scene = Scene::new(&[list[0].clone(), list[1].clone()]);
     let mut detector = Detector::new(&scene.model).unwrap();
     scene.k.p[1] = V3::new(f64::NAN, 0.0, 0.0);
+    assert!(scene.all(&mut detector).is_empty());
+    scene.place(0, Pose::identity());
+    scene.k.r[1].r[0].x = f64::NAN;
     assert!(scene.all(&mut detector).is_empty());
 }

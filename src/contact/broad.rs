@@ -1,12 +1,33 @@
 //! Which pairs are near: a list that holds as long as nothing has moved further than its margin allows (Verlet's).
 
 use super::part::{Part, Shape};
-use super::vector::norm;
+use super::vector::{Frame, norm};
 use crate::dynamics::Kinematics;
 use crate::math::{M3, V3};
 
 /// Pairs are listed up to this distance, and further if things are fast, m.
 const MARGIN: f64 = 0.05;
+
+/// A pair, and what its two parts were apart at least when the list was made, m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Listed {
+    pub pair: [u32; 2],
+    distance: f64,
+}
+
+/// The pairs that are near: those of a list that were nearer than a limit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near<'a> {
+    list: &'a [Listed],
+    limit: f64,
+}
+
+impl<'a> Near<'a> {
+    /// In ascending order.
+    pub(super) fn pairs(self) -> impl Iterator<Item = [u32; 2]> + 'a {
+        self.list.iter().filter(move |l| l.distance < self.limit).map(|l| l.pair)
+    }
+}
 
 /// Pairs that may touch, and those of them that are near.
 #[derive(Clone, Debug)]
@@ -20,7 +41,7 @@ pub(super) struct Broad {
     then: Vec<(M3<f64>, V3<f64>)>,
     margin: f64,
     fresh: bool,
-    list: Vec<[u32; 2]>,
+    list: Vec<Listed>,
     /// Per part: where it begins and ends along x.
     spans: Vec<(f64, f64, u32)>,
     centers: Vec<V3<f64>>,
@@ -59,7 +80,7 @@ impl Broad {
 
     /// The pairs that are nearer than `reach` plus what two bodies may approach in `h` seconds, and some that are not; in
     /// ascending order.
-    pub(super) fn near(&mut self, parts: &[Part], k: &Kinematics, (reach, h): (f64, f64)) -> &[[u32; 2]] {
+    pub(super) fn near(&mut self, parts: &[Part], k: &Kinematics, (reach, h): (f64, f64)) -> Near<'_> {
         let mut fastest: f64 = 0.0;
         let mut moved: f64 = 0.0;
         for ((body, far), (r, p)) in self.bodies.iter().zip(&self.then) {
@@ -70,11 +91,12 @@ impl Broad {
         }
         let needed = reach + 2.0 * h * fastest;
         let holds = self.fresh && 2.0 * moved + needed <= self.margin;
-        if !holds {
-            self.margin = MARGIN.max(4.0 * needed);
-            self.search(parts, k);
+        if holds {
+            return Near { list: &self.list, limit: needed + 2.0 * moved };
         }
-        &self.list
+        self.margin = MARGIN.max(4.0 * needed);
+        self.search(parts, k);
+        Near { list: &self.list, limit: needed }
     }
 
     /// Sweeps along x.
@@ -96,12 +118,16 @@ impl Broad {
         for (i, (_, end, a)) in self.spans.iter().enumerate() {
             for (_, _, b) in self.spans[i + 1..].iter().take_while(|s| s.0 <= end + self.margin) {
                 let pair = [*a.min(b), *a.max(b)];
-                if self.may(*a, *b) && distance(parts, pair, k) <= self.margin {
-                    self.list.push(pair);
+                if self.may(*a, *b) {
+                    let [x, y] = pair.map(|i| &parts[i as usize]);
+                    let distance = distance([x, y], &[x.placed(k), y.placed(k)]);
+                    if distance <= self.margin {
+                        self.list.push(Listed { pair, distance });
+                    }
                 }
             }
         }
-        self.list.sort_unstable();
+        self.list.sort_unstable_by_key(|l| l.pair);
     }
 }
 
@@ -110,30 +136,31 @@ fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// Two parts are at least this far apart, m.
-pub(super) fn distance(parts: &[Part], [a, b]: [u32; 2], k: &Kinematics) -> f64 {
-    let (x, y) = (&parts[a as usize], &parts[b as usize]);
+/// Two parts at these frames are at least this far apart, m.
+pub(super) fn distance([x, y]: [&Part; 2], [f, g]: &[Frame; 2]) -> f64 {
+    let (p, q) = (f.at(x.extent.0), g.at(y.extent.0));
     match (&x.shape, &y.shape) {
-        (Shape::HalfSpace, _) => above(x, y, k),
-        (_, Shape::HalfSpace) => above(y, x, k),
+        (Shape::HalfSpace, _) => f.r.col2().dot(q - f.p) - x.margin - wide(g, y.extent.1, f.r.col2()).min(y.radius),
+        (_, Shape::HalfSpace) => g.r.col2().dot(p - g.p) - y.margin - wide(f, x.extent.1, g.r.col2()).min(x.radius),
         _ => {
-            let (p, q) = (x.center(k), y.center(k));
-            let balls = norm(q - p) - x.radius - y.radius;
-            let (large, small, center) = if x.radius >= y.radius { (x, y, q) } else { (y, x, p) };
-            balls.max(outside(large, center, k) - small.radius)
+            let way = q - p;
+            let balls = norm(way) - x.radius - y.radius;
+            balls.max(beside((f, x), (g, y), way)).max(beside((g, y), (f, x), way))
         }
     }
 }
 
-fn above(ground: &Part, part: &Part, k: &Kinematics) -> f64 {
-    let frame = ground.placed(k);
-    frame.r.col2().dot(part.center(k) - frame.p) - part.radius - ground.margin
+/// Half the width of a box along a unit vector.
+fn wide(frame: &Frame, half: V3<f64>, n: V3<f64>) -> f64 {
+    let local = frame.r.tv(n);
+    local.x.abs() * half.x + local.y.abs() * half.y + local.z.abs() * half.z
 }
 
-/// Distance of a point from the box around a part.
-fn outside(part: &Part, point: V3<f64>, k: &Kinematics) -> f64 {
-    let c = part.placed(k).inside(point) - part.extent.0;
-    let h = part.extent.1;
-    let beyond = |c: f64, h: f64| (c.abs() - h).max(0.0);
-    norm(V3::new(beyond(c.x, h.x), beyond(c.y, h.y), beyond(c.z, h.z)))
+/// How far the box or ball around a part lies beside the box around another one, along the axes of that; `way` leads from
+/// middle to middle.
+fn beside((f, x): (&Frame, &Part), (g, y): (&Frame, &Part), way: V3<f64>) -> f64 {
+    let local = f.r.tv(way);
+    let (axes, half) = ([f.r.col0(), f.r.col1(), f.r.col2()], x.extent.1);
+    let along = |axis: usize, c: f64, h: f64| c.abs() - h - wide(g, y.extent.1, axes[axis]).min(y.radius);
+    along(0, local.x, half.x).max(along(1, local.y, half.y)).max(along(2, local.z, half.z))
 }

@@ -63,22 +63,27 @@ impl Detector {
         out.clear();
         self.fastest = 0.0;
         let parts = &self.parts;
-        for &pair in self.broad.near(parts, k, (REACH, FASTER * h)) {
+        for pair in self.broad.near(parts, k, (REACH, FASTER * h)).pairs() {
             let (a, b) = (&parts[pair[0] as usize], &parts[pair[1] as usize]);
             let ([va, vb], [wa, wb]) = split(a.speed(k), b.speed(k));
             let approach = h * (norm(vb - va) + wa * a.radius + wb * b.radius);
             let reach = REACH + FASTER * approach;
-            let least = distance(parts, pair, k);
-            if least >= reach || least.is_nan() {
+            let placed = [a.placed(k), b.placed(k)];
+            let least = distance([a, b], &placed);
+            // A turn that is not a number does not show in the distance of balls.
+            let turns = placed[0].r.r[0].x + placed[1].r.r[0].x;
+            if least >= reach || (least + turns).is_nan() {
                 continue;
             }
             self.fastest = self.fastest.max(approach / a.thickness.min(b.thickness));
             self.raws.clear();
-            narrow(&mut self.scratch, [a, b], k, reach, &mut self.raws);
+            narrow(&mut self.scratch, [a, b], &placed, reach, &mut self.raws);
+            if self.raws.is_empty() {
+                continue;
+            }
             keep(&mut self.raws);
             // Frames of the bodies as the narrow phase sees them: the world's axes about side 0.
-            let origin = a.center(k);
-            let frames = [a, b].map(|p| Frame { r: k.r[p.body], p: k.p[p.body] - origin });
+            let frames = [a, b].map(|p| Frame { r: k.r[p.body], p: k.p[p.body] - placed[0].p });
             out.extend(self.raws.iter().map(|raw| raw.fixed(pair, [a.body, b.body], &frames)));
         }
     }
@@ -99,13 +104,9 @@ fn keep(raws: &mut Vec<Raw>) {
     }
 }
 
-/// The points of one pair, in the world's axes about the middle of the first part.
-fn narrow(s: &mut Scratch, parts: [&Part; 2], k: &Kinematics, reach: f64, out: &mut Vec<Raw>) {
-    let origin = parts[0].center(k);
-    let frames = parts.map(|part| {
-        let placed = part.placed(k);
-        Frame { r: placed.r, p: placed.p - origin }
-    });
+/// The points of one pair, in the world's axes about the first part's origin.
+fn narrow(s: &mut Scratch, parts: [&Part; 2], placed: &[Frame; 2], reach: f64, out: &mut Vec<Raw>) {
+    let frames = placed.map(|f| Frame { r: f.r, p: f.p - placed[0].p });
     let flipped = match (&parts[0].shape, &parts[1].shape) {
         (_, Shape::HalfSpace | Shape::Surface(_)) => true,
         (Shape::Convex(a), Shape::Convex(b)) => rank(&a.kind) > rank(&b.kind),

@@ -39,6 +39,7 @@ pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, (reach, size): (
     }
     let good = |side: usize| faces[side].filter(|f| f.0 >= near.distance - tolerance).map(|f| (side, f.1));
     let reference = good(0).or_else(|| good(1));
+    let near = if reference.is_none() { near.polished(a, b) } else { near };
     if let Some((side, n)) = reference {
         on_face(s, [a, b], (side, n), reach, out);
     }

@@ -83,15 +83,32 @@ impl Search {
         // The line between the points is the better normal where it has a length.
         let n = if !deep && length > 1e-7 { (q - p) * (1.0 / length) } else { unit(n)? };
         let n = if deep && separation(a, b, -n) > separation(a, b, n) { -n } else { n };
-        let n = if a.solid.is_smooth() || b.solid.is_smooth() { polished(a, b, n) } else { n };
         // Where they just touch, the search has no direction: then that of a face may be the right one.
         let said = if deep { n.dot(q - p) } else { length };
         let doubtful = separation(a, b, n) < said - 1e-6 * (said.abs() + 1e-3);
         let n = if doubtful { of_faces(a, b, n) } else { n };
-        // Onto the planes that bound the cores in this direction, so that the distance is what the direction proves.
+        Some(Nearest { points: [p, q], normal: n, distance: 0.0 }.along(a, b, n))
+    }
+}
+
+impl Nearest {
+    /// The points moved onto the planes across `n` that bound the cores, so that the distance is what `n` proves.
+    fn along(self, a: &Placed, b: &Placed, n: V3<f64>) -> Self {
+        let [p, q] = self.points;
         let (h, g) = (n.dot(a.support(n)), n.dot(b.support(-n)));
-        let points = [p + n * (h - n.dot(p)), q + n * (g - n.dot(q))];
-        Some(Nearest { points, normal: n, distance: g - h })
+        Self { points: [p + n * (h - n.dot(p)), q + n * (g - n.dot(q))], normal: n, distance: g - h }
+    }
+
+    /// With the direction that separates best: the search leaves curved cores when it is good to some 1e-3.
+    pub(super) fn polished(self, a: &Placed, b: &Placed) -> Self {
+        if !(a.solid.is_smooth() || b.solid.is_smooth()) {
+            return self;
+        }
+        let n = newton(a, b, self.normal);
+        let way = b.support(-n) - a.support(n);
+        let across = norm(way - n * n.dot(way));
+        let n = if across <= 1e-9 { n } else { planes(a, b, n) };
+        if separation(a, b, n) > self.distance { self.along(a, b, n) } else { self }
     }
 }
 
@@ -117,7 +134,7 @@ const STEP: f64 = 1e-5;
 
 /// The direction near `n` that separates two smooth cores best: where the vector between their supporting points, whose part
 /// across `n` is the gradient of the separation, lies along `n`. Newton's method with differences, as long as it gains.
-fn polished(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
+fn newton(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
     let apart = |n: V3<f64>| b.support(-n) - a.support(n);
     let mut best = n;
     let mut way = apart(n);
@@ -145,4 +162,65 @@ fn polished(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
         (best, way) = (next, new);
     }
     best
+}
+
+/// Widest turn that is tried, rad; then 0.4 of it, and so on for so many rounds.
+const WIDEST: f64 = 0.1;
+const CUTS: usize = 15;
+
+/// As [`newton`], where a corner or an edge meets a curved surface. Each supporting vector x bounds the separation by n·x from
+/// above; the best direction under the bounds of the five directions around the best one so far is the next to try.
+fn planes(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
+    let apart = |n: V3<f64>| b.support(-n) - a.support(n);
+    let (mut best, mut gain, mut wide) = (n, separation(a, b, n), WIDEST);
+    for _ in 0..CUTS {
+        let u = across(best);
+        let v = best.cross(u);
+        let turns = [(0.0, 0.0), (wide, 0.0), (-wide, 0.0), (0.0, wide), (0.0, -wide)];
+        let bounds = turns.map(|(x, y)| {
+            let way = apart(best + (u * x + v * y) * 0.5);
+            [way.dot(best), way.dot(u), way.dot(v)]
+        });
+        let (x, y) = highest(&bounds, wide);
+        if let Some(next) = unit(best + u * x + v * y) {
+            let new = separation(a, b, next);
+            if new > gain {
+                (best, gain) = (next, new);
+            }
+        }
+        wide *= 0.4;
+    }
+    best
+}
+
+/// Where the least of the planes c + g·x + h·y is highest, within a square: at a corner of it, or where planes meet.
+fn highest(planes: &[[f64; 3]; 5], wide: f64) -> (f64, f64) {
+    let mut best = (f64::NEG_INFINITY, (0.0, 0.0));
+    let mut try_at = |x: f64, y: f64| {
+        if x.abs() <= wide && y.abs() <= wide {
+            let least = planes.iter().fold(f64::INFINITY, |m, [c, g, h]| m.min(c + g * x + h * y));
+            if least > best.0 {
+                best = (least, (x, y));
+            }
+        }
+    };
+    for (x, y) in [(wide, wide), (wide, -wide), (-wide, wide), (-wide, -wide)] {
+        try_at(x, y);
+    }
+    let minus = |i: usize, j: usize| [0, 1, 2].map(|k| planes[i][k] - planes[j][k]);
+    for i in 0..5 {
+        for j in i + 1..5 {
+            let [c, g, h] = minus(i, j);
+            for side in [wide, -wide] {
+                try_at(side, -(c + g * side) / h);
+                try_at(-(c + h * side) / g, side);
+            }
+            for k in j + 1..5 {
+                let [d, e, f] = minus(i, k);
+                let det = g * f - h * e;
+                try_at((h * d - c * f) / det, (c * e - g * d) / det);
+            }
+        }
+    }
+    best.1
 }
