@@ -11,4 +11,9 @@ mod iteration;
 mod lifts;
 #[path = "rows/response.rs"]
 mod response;
+
+#[path = "rows/coulomb.rs"]
+mod coulomb;
+#[path = "rows/problems.rs"]
+mod problems;
 mod support;

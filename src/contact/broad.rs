@@ -94,9 +94,9 @@ impl Broad {
         self.spans.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
         self.list.clear();
         for (i, (_, end, a)) in self.spans.iter().enumerate() {
-            for (_, _, b) in self.spans[i + 1..].iter().take_while(|s| !(s.0 > end + self.margin)) {
+            for (_, _, b) in self.spans[i + 1..].iter().take_while(|s| s.0 <= end + self.margin) {
                 let pair = [*a.min(b), *a.max(b)];
-                if self.may(*a, *b) && !(distance(parts, pair, k) > self.margin) {
+                if self.may(*a, *b) && distance(parts, pair, k) <= self.margin {
                     self.list.push(pair);
                 }
             }
@@ -105,9 +105,9 @@ impl Broad {
     }
 }
 
-/// The larger one; what is not a number stays.
+/// The larger one; what is not a number stays, so that the list is made anew.
 fn larger(a: f64, b: f64) -> f64 {
-    if a >= b { a } else { b }
+    if a >= b || a.is_nan() { a } else { b }
 }
 
 /// Two parts are at least this far apart, m.

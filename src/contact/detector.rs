@@ -69,8 +69,7 @@ impl Detector {
             let approach = h * (norm(vb - va) + wa * a.radius + wb * b.radius);
             let reach = REACH + FASTER * approach;
             let least = distance(parts, pair, k);
-            // Written so that what is not a number is left out.
-            if !(least < reach) {
+            if least >= reach || least.is_nan() {
                 continue;
             }
             self.fastest = self.fastest.max(approach / a.thickness.min(b.thickness));

@@ -8,11 +8,14 @@ use crate::model::{JointType, LinkFrame, Model};
 /// Links that overlap by more than this where all joints are at 0 never touch, m.
 pub const OVERLAP: f64 = 1e-4;
 
+/// Two links (ascending) that overlap, and by how much, m.
+pub type Overlap = ([usize; 2], f64);
+
 /// Pairs of links that never touch, ascending: those of one body or of bodies that a joint connects, and those of a chain
 /// without self-collision (J-9). Bodies without mass, which soft joints and groups add, do not come between. The second
 /// list holds the pairs that would be allowed, but overlap by more than [`OVERLAP`] where all joints are at 0, and by how
 /// much; `m.colliders` must be filled.
-pub fn excluded(m: &Model) -> (Vec<[usize; 2]>, Vec<([usize; 2], f64)>) {
+pub fn excluded(m: &Model) -> (Vec<[usize; 2]>, Vec<Overlap>) {
     let mut links: Vec<usize> = m.colliders.iter().filter_map(|c| c.link).collect();
     links.sort_unstable();
     links.dedup();
@@ -60,7 +63,7 @@ fn chained(m: &Model, a: usize, b: usize) -> bool {
     m.chain_of(a).is_some_and(|chain| !chain.self_collision && chain.links.binary_search(&b).is_ok())
 }
 
-fn overlaps(m: &Model) -> Vec<([usize; 2], f64)> {
+fn overlaps(m: &Model) -> Vec<Overlap> {
     let Some(mut detector) = Detector::new(m) else { return vec![] };
     let mut k = Kinematics::new(m);
     kinematics(m, &mut k, &m.neutral(), &vec![0.0; m.nv]);
@@ -68,7 +71,7 @@ fn overlaps(m: &Model) -> Vec<([usize; 2], f64)> {
     k.v.iter_mut().chain(&mut k.w).for_each(|v| *v = V3::default());
     let mut touches: Vec<Touch> = vec![];
     detector.find(&k, 0.0, &mut touches);
-    let mut found: Vec<([usize; 2], f64)> = vec![];
+    let mut found: Vec<Overlap> = vec![];
     for touch in &touches {
         let [Some(a), Some(b)] = touch.pair.map(|c| m.colliders[c as usize].link) else { continue };
         let (pair, depth) = ([a.min(b), a.max(b)], -touch.placed(&k).gap);

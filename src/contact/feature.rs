@@ -87,11 +87,11 @@ impl Feature {
 
     /// Both ends of a line along z if the direction is across it, else one; what each adds to its place and its curve.
     fn ends(&mut self, along: f64, z: [f64; 2], more: impl Fn(usize) -> (V3<f64>, f64)) {
-        for end in 0..2 {
+        for (end, z) in z.into_iter().enumerate() {
             let mine = if end == 0 { along <= ALONG } else { along >= -ALONG };
             if mine {
                 let (shift, curve) = more(end);
-                self.add(V3::new(0.0, 0.0, z[end]) + shift, curve, end as u32);
+                self.add(V3::new(0.0, 0.0, z) + shift, curve, end as u32);
             }
         }
     }

@@ -3,6 +3,7 @@
 use super::feature::{Feature, Spot};
 use super::nearest::{Nearest, Placed, Search, separation};
 use super::raw::{Raw, SAME, reduce};
+use super::vector::norm;
 use crate::math::V3;
 
 /// Memory of the narrow phase; made once.
@@ -25,13 +26,19 @@ const SECOND: u32 = 1 << 28;
 pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, (reach, size): (f64, f64), out: &mut Vec<Raw>) {
     let from = out.len();
     let round = [a.solid.round, b.solid.round];
-    let Some(near) = s.search.nearest(a, b, reach + round[0] + round[1]) else { return };
+    let Some(mut near) = s.search.nearest(a, b, reach + round[0] + round[1]) else { return };
     s.features[0].of(a.solid, &a.frame, near.normal);
     s.features[1].of(b.solid, &b.frame, -near.normal);
     let tolerance = 1e-6 * size + 0.02 * (-near.distance).max(0.0);
-    let face = |side: usize, n: V3<f64>| (separation(a, b, n) >= near.distance - tolerance).then_some((side, n));
-    let faces = [s.features[0].normal, s.features[1].normal.map(|n| -n)];
-    let reference = faces[0].and_then(|n| face(0, n)).or_else(|| faces[1].and_then(|n| face(1, n)));
+    let face = |n: V3<f64>| (separation(a, b, n), n);
+    let faces = [s.features[0].normal.map(face), s.features[1].normal.map(|n| face(-n))];
+    for (distance, normal) in faces.into_iter().flatten() {
+        if distance > near.distance {
+            near = Nearest { distance, normal, ..near };
+        }
+    }
+    let good = |side: usize| faces[side].filter(|f| f.0 >= near.distance - tolerance).map(|f| (side, f.1));
+    let reference = good(0).or_else(|| good(1));
     if let Some((side, n)) = reference {
         on_face(s, [a, b], (side, n), reach, out);
     }
@@ -46,7 +53,9 @@ pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, (reach, size): (
 /// The nearest points alone.
 fn single(s: &Scratch, near: &Nearest, round: [f64; 2]) -> Raw {
     let core = near.points;
-    if near.distance > SAME && round[0] + round[1] > 0.0 {
+    let way = core[1] - core[0];
+    let straight = norm(way - near.normal * near.distance) <= 1e-6 * near.distance;
+    if near.distance > SAME && straight && round[0] + round[1] > 0.0 {
         return Raw::between(NEAREST, core, round, near.normal);
     }
     // One spot: a smooth surface, or a corner.

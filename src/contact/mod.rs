@@ -22,5 +22,5 @@ mod vector;
 
 pub use collect::{Defaults, colliders};
 pub use detector::Detector;
-pub use exclude::{OVERLAP, excluded};
+pub use exclude::{OVERLAP, Overlap, excluded};
 pub use touch::{Normal, Placed, Touch};

@@ -67,6 +67,26 @@ impl Solid {
         Some(Self { kind, round: radius + margin })
     }
 
+    /// Has the core a curved surface?
+    pub(super) fn is_smooth(&self) -> bool {
+        matches!(self.kind, Kind::Balls { .. } | Kind::Ellipsoid { .. } | Kind::Frustum { .. })
+    }
+
+    /// Tells the outward normals of all faces, in the shape's frame.
+    pub(super) fn face_normals(&self, mut tell: impl FnMut(V3<f64>)) {
+        let (x, y, z) = (V3::new(1.0, 0.0, 0.0), V3::new(0.0, 1.0, 0.0), V3::new(0.0, 0.0, 1.0));
+        match &self.kind {
+            Kind::Cuboid { .. } => [x, -x, y, -y, z, -z].into_iter().for_each(tell),
+            Kind::Frustum { .. } => [z, -z].into_iter().for_each(tell),
+            Kind::Hull(hull) => hull.normals.iter().copied().for_each(tell),
+            Kind::Triangle([a, b, c]) => {
+                let n = unit((*b - *a).cross(*c - *a));
+                n.into_iter().flat_map(|n| [n, -n]).for_each(&mut tell);
+            }
+            _ => {}
+        }
+    }
+
     /// The point of the core furthest in a direction of any length.
     pub(super) fn support(&self, d: V3<f64>) -> V3<f64> {
         let up = |z: f64, half: f64| V3::new(0.0, 0.0, half.copysign(z));

@@ -168,15 +168,12 @@ pub(super) fn on_surface(s: &mut Scratch, q: &Query, (reach, size): (f64, f64), 
         let corners = q.surface.corners[t as usize];
         let triangle = Solid { kind: Kind::Triangle(corners), round: q.margin };
         let begin = out.len();
-        // Its place is that of a corner, so that a search starts from where it is.
         manifold(s, &Placed { solid: &triangle, frame: own }, &solid, (reach, size), out);
         let mut kept = begin;
         for i in begin..out.len() {
-            if let Some(raw) = judged(q, (t as usize, &solid), out[i]) {
-                if raw.gap < reach {
-                    out[kept] = Raw { feature: name(t, raw.feature), ..raw };
-                    kept += 1;
-                }
+            if let Some(raw) = judged(q, (t as usize, &solid), out[i]).filter(|raw| raw.gap < reach) {
+                out[kept] = Raw { feature: name(t, raw.feature), ..raw };
+                kept += 1;
             }
         }
         out.truncate(kept);

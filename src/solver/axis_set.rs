@@ -9,6 +9,7 @@
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
 use super::contacts::Contacts;
+use super::contested::Contest;
 use super::couplings::Couplings;
 use super::law::{FRICTION, Law};
 use super::mobility::Answers;
@@ -94,6 +95,12 @@ pub struct AxisSet {
     pub(super) damped: (f64, f64),
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
+    /// Per axis: is it a row beside contacts?
+    pub(super) contests: Vec<Contest>,
+    /// Pass of the step.
+    passes: u32,
+    /// Step of the last pass, s.
+    pub(super) h: f64,
     /// Per axis: its tree is out of the computation.
     pub resting: Vec<bool>,
     pub(super) mean: bool,
@@ -141,6 +148,9 @@ impl AxisSet {
             paid: vec![(0.0, 0.0); n + model.softs.len()],
             damped: (0.0, 0.0),
             worst_stop: 0.0,
+            contests: vec![Contest::default(); n],
+            passes: 0,
+            h: 0.0,
             resting: vec![false; n],
             mean: false,
             sweeps: 1,
@@ -166,6 +176,8 @@ impl AxisSet {
     pub fn prepare(&mut self, m: &Model, start: &StepStart, effects: Effects) -> bool {
         let at_pole = self.update_rates(m, start.state.angles);
         (self.best, self.patience) = (usize::MAX, PATIENCE);
+        (self.passes, self.h) = (0, start.h);
+        self.contests.fill(Contest::default());
         for (i, axis) in m.axes.iter().enumerate() {
             if self.resting[i] {
                 continue;
@@ -236,6 +248,7 @@ impl AxisSet {
         }
         let loose = self.couple(m, ws, (at, v0), h, qdd);
         let misfits = self.misfits(m, ws, (h, qdd)) + loose;
+        self.passes += 1;
         if misfits > 0 && wanted {
             if misfits < self.best {
                 (self.best, self.patience) = (misfits, PATIENCE);
@@ -267,6 +280,12 @@ impl AxisSet {
         for (i, axis) in m.axes.iter().enumerate() {
             self.moves[i] = 0;
             if self.resting[i] {
+                continue;
+            }
+            if self.contests[i].on {
+                let end = self.speed[i] + h * self.axis_rate(m, axis, qdd);
+                self.moves[i] = self.leaves_contest(i, end);
+                count += usize::from(self.moves[i] != 0);
                 continue;
             }
             let (law, place) = (&self.laws[i], self.place[i]);
@@ -310,8 +329,9 @@ impl AxisSet {
 
     /// Moves all that do not fit, or only the last of them.
     fn apply(&mut self, all: bool) {
+        let contest = self.passes > 1 && self.contacts().is_some_and(|c| !c.is_empty());
         for i in (0..self.moves.len()).rev() {
-            if self.moves[i] == 0 {
+            if self.moves[i] == 0 || (contest && self.contest(i, self.moves[i])) {
                 continue;
             }
             self.place[i] = self.laws[i].neighbour(self.place[i], self.moves[i]);
@@ -327,6 +347,7 @@ impl AxisSet {
     /// the state of the last pass.
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
         self.paid.fill((0.0, 0.0));
+        self.settle_contests();
         self.damped = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
             if self.resting[i] {

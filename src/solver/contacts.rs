@@ -6,9 +6,9 @@
 use super::lifts::{Lift, LiftKind};
 use super::rows::{Kind, Rows, Solved};
 use crate::contact::{Detector, Placed, Touch};
-use crate::dynamics::{Kinematics, Push, Response, Workspace, kinematics};
+use crate::dynamics::{Columns, Kinematics, Layout, Push, Response, Workspace, kinematics};
 use crate::math::V3;
-use crate::model::{JointType, Model, Surface};
+use crate::model::{JointType, LinkFrame, Model, Surface};
 
 /// Share of a penetration that one step takes back.
 const ERP: f64 = 0.2;
@@ -107,6 +107,7 @@ pub struct Contacts {
     end: Kinematics,
     v1: Vec<f64>,
     ids: Vec<u32>,
+    columns: BodyColumns,
     /// Blocks that give way by less (trace, 1/kg) do not: what two bodies of a locked limb do to each other is rounding.
     least: f64,
     /// Step of the impulses of `old`, s.
@@ -135,6 +136,7 @@ impl Contacts {
             end: k,
             v1: vec![0.0; m.nv],
             ids: vec![],
+            columns: BodyColumns::new(m),
             least: HELD / m.bodies.iter().map(|b| b.mass).sum::<f64>(),
             h: 0.0,
             worst: 0.0,
@@ -249,7 +251,8 @@ impl Contacts {
         pass: &Pass,
         qdd: &[f64],
     ) -> Solved {
-        self.write(m, ws, (response, rows), pass, qdd);
+        self.columns.forget();
+        self.write(m, ws, (&*response, rows), pass, qdd);
         let mut solved = rows.solve(pass.sweeps, AIM);
         self.take(rows);
         if self.bounce(rows, pass.h) {
@@ -267,7 +270,7 @@ impl Contacts {
         &mut self,
         m: &Model,
         ws: &Workspace<f64>,
-        (response, rows): (&mut Response, &mut Rows),
+        (response, rows): (&Response, &mut Rows),
         pass: &Pass,
         qdd: &[f64],
     ) {
@@ -279,9 +282,10 @@ impl Contacts {
             let mut target = Target {
                 m,
                 ws,
-                response: &mut *response,
+                response: &*response,
                 rows: &mut *rows,
                 ids: &mut self.ids,
+                columns: &mut self.columns,
                 q: pass.q,
                 least: self.least,
             };
@@ -463,8 +467,10 @@ impl Point {
         t.response.layout.join(self.acts[0], self.acts[1], t.ids);
         let block = t.rows.add(kind, axes.len(), t.ids);
         for (n, axis) in axes.iter().enumerate() {
-            let pushes = self.pushes(middle, wrench(self, *axis));
-            t.response.row(t.m, t.ws, t.q, &pushes, t.rows.response(block, n));
+            let (ids, out) = t.rows.response(block, n);
+            for push in self.pushes(middle, wrench(self, *axis)).iter().filter(|push| push.body != 0) {
+                t.columns.of(t.response, (t.m, t.ws, t.q), push.body).combine(push, ids, out);
+            }
         }
         t.rows.seal(block);
         if t.rows.trace(block) < t.least {
@@ -563,13 +569,52 @@ fn end_velocities(m: &Model, pass: &Pass, qdd: &[f64], out: &mut [f64]) {
     }
 }
 
+/// Responses of the bodies that are touched, found once per pass.
+#[derive(Clone, Debug)]
+struct BodyColumns {
+    /// Per body: its place in `columns`; none if nothing on it collides.
+    place: Vec<usize>,
+    columns: Vec<Columns>,
+    fresh: Vec<bool>,
+}
+
+impl BodyColumns {
+    fn new(m: &Model) -> Self {
+        let layout = Layout::new(m);
+        let mut place = vec![usize::MAX; m.bodies.len()];
+        let mut columns = vec![];
+        for link in m.colliders.iter().filter_map(|c| c.link) {
+            let (LinkFrame::OnBody { body, .. } | LinkFrame::InGroup { body, .. }) = m.links[link].frame;
+            if body != 0 && place[body] == usize::MAX {
+                place[body] = columns.len();
+                columns.push(Columns::new(&layout));
+            }
+        }
+        Self { place, fresh: vec![false; columns.len()], columns }
+    }
+
+    /// Another pass has been made.
+    fn forget(&mut self) {
+        self.fresh.fill(false);
+    }
+
+    fn of(&mut self, response: &Response, (m, ws, q): (&Model, &Workspace<f64>, &[f64]), body: usize) -> &Columns {
+        let place = self.place[body];
+        if !std::mem::replace(&mut self.fresh[place], true) {
+            response.columns(m, ws, q, body, &mut self.columns[place]);
+        }
+        &self.columns[place]
+    }
+}
+
 /// Where rows go to.
 struct Target<'a> {
     m: &'a Model,
     ws: &'a Workspace<f64>,
-    response: &'a mut Response,
+    response: &'a Response,
     rows: &'a mut Rows,
     ids: &'a mut Vec<u32>,
+    columns: &'a mut BodyColumns,
     q: &'a [f64],
     /// Less mobility is rounding.
     least: f64,

@@ -126,7 +126,14 @@ impl Couplings {
 
     /// Solves the rows of `self.pairs`, and those of the contacts of an implicit step, and applies their impulses. True if
     /// the pairs hold then.
-    fn solve(&mut self, m: &Model, ws: &mut Workspace<f64>, pass: &Pass, contacts: bool, qdd: &mut [f64]) -> bool {
+    fn solve(
+        &mut self,
+        m: &Model,
+        ws: &mut Workspace<f64>,
+        (pass, contacts): (&Pass, bool),
+        set: &mut AxisSet,
+        qdd: &mut [f64],
+    ) -> bool {
         let h = pass.h;
         if self.h > 0.0 && self.h != h {
             self.rows.scale_impulses(h / self.h);
@@ -146,7 +153,12 @@ impl Couplings {
         let mut contacts = self.contacts.as_mut().filter(|c| contacts && !c.is_empty());
         let solved = match &mut contacts {
             None => self.rows.solve(SWEEPS, AIM),
-            Some(c) => c.solve(m, ws, (&mut self.response, &mut self.rows), pass, qdd),
+            Some(c) => {
+                set.write_contests(m, ws, (&mut self.response, &mut self.rows), (pass.q, h, qdd));
+                let solved = c.solve(m, ws, (&mut self.response, &mut self.rows), pass, qdd);
+                set.take_contests(&mut self.response, &self.rows, h);
+                solved
+            }
         };
         for k in 0..self.pairs.len() {
             self.push(k, self.rows.row_impulse(k) / h);
@@ -271,7 +283,7 @@ impl AxisSet {
             self.set_up(m, pair, (follower, leader, h));
         }
         let pass = Pass { q: s.q, v0, h, mean: self.mean, sweeps: self.sweeps };
-        let converged = couplings.solve(m, ws, &pass, true, qdd);
+        let converged = couplings.solve(m, ws, (&pass, true), self, qdd);
         let mut loose = usize::from(!converged && !couplings.pairs.is_empty());
         let mut forced = false;
         for k in 0..couplings.pairs.len() {
@@ -340,7 +352,7 @@ impl AxisSet {
             self.set_up(m, pair, (follower, leader, h));
         }
         let pass = Pass { q: s.q, v0: s.v, h, mean: true, sweeps: SWEEPS };
-        let converged = couplings.solve(m, ws, &pass, false, qdd);
+        let converged = couplings.solve(m, ws, (&pass, false), self, qdd);
         let held = |k: usize| couplings.rows.is_off(k) && couplings.pairs[k].bias.abs() > couplings.pairs[k].slack;
         let loose = (0..couplings.pairs.len()).any(held);
         self.agree((m, ws), &couplings, qdd, |_, _, a| a, |_, _, end| end);

@@ -82,14 +82,13 @@ impl Lu {
         self.step.resize(n, 0.0);
     }
 
-    /// Of the matrix with these elements.
-    pub fn factorise(&mut self, n: usize, element: impl Fn(usize, usize) -> f64) {
+    /// Of a matrix of n rows, row by row, with something added to its diagonal.
+    pub fn factorise(&mut self, n: usize, matrix: &[f64], added: impl Fn(usize) -> f64) {
         self.n = n;
+        self.lu[..n * n].copy_from_slice(matrix);
         for i in 0..n {
             self.rows[i] = i;
-            for k in 0..n {
-                self.lu[i * n + k] = element(i, k);
-            }
+            self.lu[i * n + i] += added(i);
         }
         for k in 0..n {
             let size = |i: &usize| self.lu[i * n + k].abs();

@@ -21,6 +21,11 @@ impl AxisSet {
             if self.resting[i] {
                 continue;
             }
+            if self.contests[i].on {
+                let input = self.contested_input(i, h);
+                self.write(m, ws, i, input);
+                continue;
+            }
             let (law, place, v) = (&self.laws[i], self.place[i], self.speed[i]);
             let input = if place % 2 == 1 {
                 Input::Locked((law.knots[place / 2].speed - v) / h)
@@ -59,6 +64,9 @@ impl AxisSet {
 
     /// Torque of the law that keeps a standing axis to its acceleration: what its joint needs, and its rotor.
     pub(super) fn riser_torque(&self, m: &Model, ws: &Workspace<f64>, i: usize, qdd: &[f64]) -> f64 {
+        if self.contests[i].on {
+            return self.contested_torque(i, self.h);
+        }
         let rotor = match self.rotor[i] {
             0.0 => 0.0,
             rotor => rotor * (self.axis_rate(m, &m.axes[i], qdd) - self.turning[i]),

@@ -231,6 +231,13 @@ impl Law {
         (left, right)
     }
 
+    /// The same with what static friction adds.
+    pub(super) fn held(&self, k: usize) -> (f64, f64) {
+        let (left, right) = self.ends(k);
+        let stiction = if self.knots[k].kinds & FRICTION != 0 { self.stiction } else { 0.0 };
+        (left + stiction, right - stiction)
+    }
+
     fn is_riser(&self, k: usize) -> bool {
         let knot = &self.knots[k];
         let sticks = self.stood > 0.0 && knot.kinds & FRICTION != 0;

@@ -7,6 +7,7 @@ mod axis_set;
 mod command;
 mod cone;
 mod contacts;
+mod contested;
 mod couplings;
 mod damping;
 mod dense;

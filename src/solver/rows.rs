@@ -65,6 +65,8 @@ pub(super) struct Block {
     /// Start of its numbers.
     pub values: usize,
     pub inner: Inner,
+    /// Of a contact that slides: velocity against impulse, from the last visit.
+    pub slip: f64,
 }
 
 /// The block's own part of `Y Yᵀ + R`.
@@ -130,7 +132,7 @@ impl Rows {
         self.ids.extend_from_slice(ids);
         self.values.resize(values + rows * ids.len() * CHUNK, 0.0);
         self.rows.resize(first + rows, Row::default());
-        self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off });
+        self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off, slip: 0.0 });
         self.finish.make_room(self.rows.len());
         self.lifts.add();
         self.blocks.len() - 1
@@ -246,7 +248,7 @@ impl Rows {
         }
         solved.residual = self.residual();
         if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
-            (solved.residual, solved.tries) = self.finish(solved.residual, wanted);
+            (solved.residual, solved.tries) = self.finish(solved.residual, wanted, solved.scale);
         }
         solved
     }

@@ -21,7 +21,7 @@ impl Problem {
 
     /// Any rows at all: contacts, discs on some of them and bounded rows, of this rank. The free velocity and the gaps are such that
     /// standing still is allowed, so there is an answer.
-    pub fn random(contacts: usize, others: usize, rank: usize, rng: &mut Random) -> Self {
+    pub fn random((contacts, others): (usize, usize), rank: usize, gaps: bool, rng: &mut Random) -> Self {
         let mut p = Self::new(rank);
         let motion = DVector::from_fn(rank, |_, _| rng.unit());
         let row = |rng: &mut Random| DVector::from_fn(rank, |_, _| rng.unit());
@@ -37,7 +37,7 @@ impl Problem {
         }
         for _ in 0..contacts {
             let friction = if rng.next().is_multiple_of(8) { 0.0 } else { 1.2 * rng.unit().abs() };
-            let gap = if rng.next().is_multiple_of(2) { 0.3 * rng.unit().abs() } else { 0.0 };
+            let gap = if gaps && rng.next().is_multiple_of(2) { 0.3 * rng.unit().abs() } else { 0.0 };
             let rows: Vec<_> = (0..3).map(|_| row(rng)).collect();
             let normal = p.y.nrows();
             let bias = |k: usize| rows[k].dot(&motion) + if k == 0 { gap } else { 0.0 };
@@ -105,11 +105,17 @@ impl Problem {
                 }
                 Kind::Cone { friction } => {
                     worst = worst.max((x[first] * own).min(u[first]).abs());
-                    worst = worst.max(rim(&[x[first + 1], x[first + 2]], &[u[first + 1], u[first + 2]], friction * x[first], own));
+                    worst = worst.max(rim(
+                        &[x[first + 1], x[first + 2]],
+                        &[u[first + 1], u[first + 2]],
+                        friction * x[first],
+                        own,
+                    ));
                 }
                 Kind::Disc { ratio, normal } => {
                     let (x2, u2) = (x.as_slice(), u.as_slice());
-                    worst = worst.max(rim(&x2[first..first + count], &u2[first..first + count], ratio * x[normal], own));
+                    worst =
+                        worst.max(rim(&x2[first..first + count], &u2[first..first + count], ratio * x[normal], own));
                 }
             }
             first += count;
@@ -117,8 +123,7 @@ impl Problem {
         worst
     }
 
-    /// A box of this mass and half sizes (m) at `center`, its 6 columns from `column` on: corner rows (n up, tangents) at the
-    /// corners, against the world or against the box whose columns start at `below`.
+    /// A contact at a point of a box (normal up), with the world or with a box below it.
     pub fn stack_contact(&mut self, (upper, lower): (&Brick, Option<&Brick>), at: V, friction: f64, bias: [f64; 3]) {
         let rows = [V::z(), V::x(), V::y()].map(|d| {
             let mut y = DVector::zeros(self.y.ncols());
@@ -147,11 +152,19 @@ impl Brick {
         Self { column: 6 * index, mass, inertia: V::new(s.y + s.z, s.x + s.z, s.x + s.y), center }
     }
 
-    fn write(&self, y: &mut DVector<f64>, at: V, d: V) {
+    /// Adds the velocity of a point along d.
+    pub fn write(&self, y: &mut DVector<f64>, at: V, d: V) {
         let turn = (at - self.center).cross(&d);
         for k in 0..3 {
-            y[self.column + k] = d[k] / self.mass.sqrt();
-            y[self.column + 3 + k] = turn[k] / self.inertia[k].sqrt();
+            y[self.column + k] += d[k] / self.mass.sqrt();
+            y[self.column + 3 + k] += turn[k] / self.inertia[k].sqrt();
+        }
+    }
+
+    /// Adds the rate of turning about d.
+    pub fn write_turn(&self, y: &mut DVector<f64>, d: V) {
+        for k in 0..3 {
+            y[self.column + 3 + k] += d[k] / self.inertia[k].sqrt();
         }
     }
 }
