@@ -74,7 +74,7 @@ fn slipping_becomes_rolling() {
         let t = w.contacts()[0];
         assert!(t.force.z > 0.0);
         let u = t.force.x.hypot(t.force.y);
-        u > 1e-6 * G
+        u > 1e-3 * mu * G
     };
     let mut rolls = None;
     for step in 0..1000 {
@@ -281,10 +281,10 @@ fn the_rod_of_painleve() {
             let linear = q.inverse() * Vec3::new(-speed, 0.0, 0.0);
             s.set_base_twist(&m, Vec3::zeros(), linear);
             w.set_initial_state(s);
-            let mut energy = total(&w);
+            let (first, mut energy) = (total(&w).abs() + 0.5 * speed * speed, total(&w));
             for _ in 0..2000 {
                 w.advance();
-                assert!(total(&w) < energy + 1e-9, "μ {mu} v {speed}: {:e}", total(&w) - energy);
+                assert!(total(&w) < energy + 1e-6 * first, "μ {mu} v {speed}: {:e}", total(&w) - energy);
                 energy = total(&w);
                 assert!(w.state().v.iter().all(|v| v.abs() < 100.0 * speed.max(1.0)));
             }
@@ -293,19 +293,19 @@ fn the_rod_of_painleve() {
     }
 }
 
-/// A chain of 16 links with a ball of 1000 times a link's mass at its end, let go beside a floor that the ball lands on.
+/// A chain of 16 links with a ball of 1000 times a link's mass at its end, stretched out sideways and let go: the ball lands on
+/// the floor, where the chain whips about. A step that ends in contact has no more energy than it began with.
 #[test]
 fn a_heavy_ball_on_a_light_chain() {
     let mut w = world(chain_with_ball(16, 0.05, 1000.0, ground(0.5)), plain());
-    let mut energy = total(&w);
-    let mut most = 0.0_f64;
-    for _ in 0..5000 {
+    let (first, mut energy) = (total(&w), total(&w));
+    for step in 0..5000 {
         w.advance();
-        most = most.max(total(&w) - energy);
-        energy = energy.min(total(&w));
+        let touched = !w.contacts().is_empty();
+        assert!(!touched || total(&w) < energy + 1e-9 * first, "step {step}: {:e}", total(&w) - energy);
+        energy = total(&w);
     }
-    println!("energy never more than {most:e} J above its least; penetration {:e}", w.stats().worst_penetration);
-    assert!(most < 1e-4 * energy.abs().max(1.0));
-    assert!(w.stats().worst_penetration < 1e-4);
+    assert!(w.stats().worst_penetration < 1e-4, "{:e}", w.stats().worst_penetration);
     assert_eq!(w.stats().diverged_steps, 0);
+    assert!(energy < first);
 }
