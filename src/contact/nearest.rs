@@ -73,20 +73,22 @@ impl Search {
         let (p, q, n, deep) = match closest_points(&Pose::IDENTITY, a, b, reach, true, &mut self.simplex) {
             GJKResult::ClosestPoints(p, q, n) => (p, q, n, false),
             GJKResult::Intersection => {
-                let Some((p, q, n)) = self.epa.closest_points(&Pose::IDENTITY, a, b, &self.simplex) else {
-                    // Just touching, or too deep for it: the best direction that can be found from outside.
-                    let n = planes(a, b, of_faces(a, b, way), WIDEST);
-                    let points = [a.support(n), b.support(-n)];
-                    return Some(Nearest { points, normal: n, distance: n.dot(points[1] - points[0]) });
-                };
+                let found = self.epa.closest_points(&Pose::IDENTITY, a, b, &self.simplex);
+                let (p, q, n) = found.unwrap_or_default();
                 (p, q, n, true)
             }
             _ => return None,
         };
         let [p, q, n] = [p, q, n].map(|v| V3::new(v.x, v.y, v.z));
+        let Some(n) = unit(n).filter(|_| (p.dot(p) + q.dot(q)).is_finite()) else {
+            // Just touching, or too deep for parry: the best direction that can be found from outside.
+            let n = planes(a, b, of_faces(a, b, way), WIDEST);
+            let points = [a.support(n), b.support(-n)];
+            return Some(Nearest { points, normal: n, distance: n.dot(points[1] - points[0]) });
+        };
         let length = norm(q - p);
         // The line between the points is the better normal where it has a length.
-        let n = if !deep && length > 1e-7 { (q - p) * (1.0 / length) } else { unit(n)? };
+        let n = if !deep && length > 1e-7 { (q - p) * (1.0 / length) } else { n };
         let n = if deep && separation(a, b, -n) > separation(a, b, n) { -n } else { n };
         // Where they just touch, the search has no direction: then that of a face may be the right one.
         let said = if deep { n.dot(q - p) } else { length };
