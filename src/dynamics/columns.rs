@@ -85,7 +85,7 @@ impl Response {
                 break;
             }
             if b.parent != 0 {
-                force.to_parent(&ws.kin[i].r, joint_transform_p(b, q));
+                force.pass_on(&ws.kin[i].r, joint_transform_p(b, q));
             }
             i = b.parent;
         }
@@ -118,8 +118,8 @@ impl Response {
             JointType::Spherical => {
                 let t = f.torque;
                 [y[0], y[1], y[2]] = times(&self.balls[b.ball], &t);
-                for k in 0..6 {
-                    let (_, carried) = ws.balls[b.ball].yielding(V3::new(t[0][k], t[1][k], t[2][k]));
+                for (k, ((x, y), z)) in t[0].into_iter().zip(t[1]).zip(t[2]).enumerate() {
+                    let (_, carried) = ws.balls[b.ball].yielding(V3::new(x, y, z));
                     f.sub(k, carried.a, carried.l);
                 }
             }
@@ -173,7 +173,7 @@ impl Six6 {
 
     /// About the parent's origin, in the parent's axes.
     #[inline(always)]
-    fn to_parent(&mut self, r: &M3<f64>, p: V3<f64>) {
+    fn pass_on(&mut self, r: &M3<f64>, p: V3<f64>) {
         let (t, f) = (times(r, &self.torque), times(r, &self.force));
         let cross = |a: f64, x: &Six, b: f64, y: &Six, t: &Six| std::array::from_fn(|k| a * x[k] - b * y[k] + t[k]);
         self.torque = [

@@ -126,8 +126,8 @@ impl Field<'_> {
         if most == 0.0 {
             return 0.0;
         }
-        for n in 0..N {
-            self.rows[b.first + n].impulse = to[n];
+        for (row, to) in self.rows[b.first..].iter_mut().zip(to) {
+            row.impulse = to;
         }
         for (i, id) in ids.iter().enumerate() {
             let w = &mut self.w[*id as usize];

@@ -1,5 +1,4 @@
-//! Constraint rows in factor space: each holds its response y, so that its velocity is `bias + y·w` and its impulse x
-//! moves w by y x. No row knows of another, of the mass matrix, or of a robot.
+//! Constraint rows in factor space: each holds its response y; its velocity is `bias + y·w`, its impulse x moves w by y x.
 
 use super::cone::{ConeBlock, Plane, disc};
 

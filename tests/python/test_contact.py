@@ -10,6 +10,8 @@ import pytest
 from conftest import BINARY, nanoseconds, wait_until
 from cyclone import listen as cyclone_listen
 from geometry_msgs.msg import TwistStamped, WrenchStamped
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
 from rosgraph_msgs.msg import Clock
 from simulation import ORIGIN, columns, refused, simulate
 
@@ -66,6 +68,18 @@ def test_the_leg_kicks_the_ball(tmp_path):
     rows = columns(tmp_path / "kick.csv")
     assert rows["ball.x"][0] == 0.33 and rows["ball.x"][-1] > 0.6
     assert "wall.x" not in rows and "base.x" not in rows
+
+
+def test_a_bag_has_an_odometry_of_its_own_for_what_floats_beside_the_robot(tmp_path):
+    path = tmp_path / "kick" / "kick.mcap"
+    command = [BINARY, "simulate", "--scene", LEG_AND_BALL, "--duration", "0.01", "--out", path]
+    done = subprocess.run([*map(str, command)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    with AnyReader([path.parent], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+        read = [(c.topic, reader.deserialize(raw, c.msgtype)) for c, _, raw in reader.messages()]
+    odometry = [message for topic, message in read if topic == "/ball/odom"]
+    assert {topic for topic, _ in read} == {"/clock", "/joint_states", "/ball/odom"} and len(odometry) == 11
+    assert odometry[0].child_frame_id == "ball" and odometry[0].pose.pose.position.x == 0.33
 
 
 def test_a_scene_without_any_robot_is_refused(tmp_path):

@@ -115,3 +115,62 @@ pub fn feet(path: &str, friction: f64) -> Model {
     m.set_colliders(colliders);
     m
 }
+
+/// Every link may rest.
+pub fn rest(m: &mut Model, linear: f64, angular: f64, after: f64) {
+    for link in &mut m.links {
+        link.deactivation = Some(realnoid::model::Deactivation { linear, angular, after });
+    }
+    m.effects.deactivation = true;
+}
+
+/// Free cubes of these masses, one link each.
+pub fn cubes(masses: &[f64], half: f64, own: Surface, floor: Collider) -> Model {
+    let list: Vec<(f64, f64)> = masses.iter().map(|m| (*m, half)).collect();
+    let mut m = balls(&list, own, floor);
+    for c in m.colliders.iter_mut().skip(1) {
+        c.form = ContactForm::Cuboid { half: [half; 3] };
+    }
+    m.set_colliders(std::mem::take(&mut m.colliders));
+    m
+}
+
+/// A thin rod along x with a ball of no size at its two ends.
+pub fn rod(mass: f64, half: f64, own: Surface, floor: Collider) -> Model {
+    let i = mass * half * half / 3.0;
+    let mut m = free_body(mass, [1e-6, i, i]);
+    let c = on_link(&m, "b", ContactForm::Capsule { bottom: 1e-6, top: 1e-6, half }, own);
+    let turn = realnoid::math::Quat::from_axis_angle(&realnoid::math::Vec3::y_axis(), std::f64::consts::FRAC_PI_2);
+    m.set_colliders(vec![floor, Collider { pose: Pose::from_parts(nalgebra::Translation3::identity(), turn), ..c }]);
+    m
+}
+
+/// Links of 0.1 kg that hang from 0.9 m above the floor, stretched out sideways, and a ball at the end.
+pub fn chain_with_ball(links: usize, length: f64, ratio: f64, floor: Collider) -> Model {
+    let inertia = |m: f64, r: f64| {
+        let i = 0.4 * m * r * r;
+        format!(
+            r#"<inertial><origin xyz="{} 0 0"/><mass value="{m}"/><inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial>"#,
+            length / 2.0
+        )
+    };
+    let mut urdf = String::from(r#"<robot name="r"><link name="l0"/>"#);
+    for k in 1..=links + 1 {
+        let (mass, radius) = if k > links { (0.1 * ratio, 0.1) } else { (0.1, 0.02) };
+        let (x, axis) = (if k == 1 { 0.0 } else { length }, if k % 2 == 0 { "0 1 0" } else { "0 0 1" });
+        let axis = if k == 1 { "0 1 0" } else { axis };
+        let z = if k == 1 { 0.9 } else { 0.0 };
+        urdf += &format!(
+            r#"<link name="l{k}">{}</link><joint name="j{k}" type="continuous"><origin xyz="{x} 0 {z}"/><axis xyz="{axis}"/><parent link="l{}"/><child link="l{k}"/></joint>"#,
+            inertia(mass, radius),
+            k - 1
+        );
+    }
+    urdf += "</robot>";
+    let mut m = model(&urdf, Base::Fixed);
+    let end = format!("l{}", links + 1);
+    let c = on_link(&m, &end, ContactForm::Ball { radius: 0.1 }, surface(1.0));
+    let pose = Pose::translation(length / 2.0, 0.0, 0.0);
+    m.set_colliders(vec![floor, Collider { pose, ..c }]);
+    m
+}
