@@ -176,8 +176,9 @@ fn touching_shapes_have_the_gap_that_was_left() {
                     at.translation.vector -= n * (far.gap - left);
                     scene.place(1, at);
                     let here = nearest(&mut scene, &mut detector);
-                    // A face is preferred up to 1e-6 of the size of the smaller shape, which is below 0.5 m.
-                    let slack = 5e-7;
+                    // A face is preferred up to 1e-6 of the size of the smaller shape, which is below 0.5 m, and its points stand
+                    // for the nearest one up to as much again.
+                    let slack = 1e-6;
                     let error = here.gap - left;
                     // Corners that overlap may come apart over a shorter way than the one they came.
                     let more = if left < 0.0 { -left } else { 0.02 * left };

@@ -73,20 +73,27 @@ impl Search {
         let (p, q, n, deep) = match closest_points(&Pose::IDENTITY, a, b, reach, true, &mut self.simplex) {
             GJKResult::ClosestPoints(p, q, n) => (p, q, n, false),
             GJKResult::Intersection => {
-                let (p, q, n) = self.epa.closest_points(&Pose::IDENTITY, a, b, &self.simplex)?;
+                let found = self.epa.closest_points(&Pose::IDENTITY, a, b, &self.simplex);
+                let (p, q, n) = found.unwrap_or_default();
                 (p, q, n, true)
             }
             _ => return None,
         };
         let [p, q, n] = [p, q, n].map(|v| V3::new(v.x, v.y, v.z));
+        let Some(n) = unit(n).filter(|_| (p.dot(p) + q.dot(q)).is_finite()) else {
+            // Just touching, or too deep for parry: the best direction that can be found from outside.
+            let n = planes(a, b, of_faces(a, b, way), WIDEST);
+            let points = [a.support(n), b.support(-n)];
+            return Some(Nearest { points, normal: n, distance: n.dot(points[1] - points[0]) });
+        };
         let length = norm(q - p);
         // The line between the points is the better normal where it has a length.
-        let n = if !deep && length > 1e-7 { (q - p) * (1.0 / length) } else { unit(n)? };
+        let n = if !deep && length > 1e-7 { (q - p) * (1.0 / length) } else { n };
         let n = if deep && separation(a, b, -n) > separation(a, b, n) { -n } else { n };
         // Where they just touch, the search has no direction: then that of a face may be the right one.
         let said = if deep { n.dot(q - p) } else { length };
         let doubtful = separation(a, b, n) < said - 1e-6 * (said.abs() + 1e-3);
-        let n = if doubtful { of_faces(a, b, n) } else { n };
+        let n = if doubtful { planes(a, b, of_faces(a, b, n), WIDEST) } else { n };
         Some(Nearest { points: [p, q], normal: n, distance: 0.0 }.along(a, b, n))
     }
 }
@@ -107,7 +114,7 @@ impl Nearest {
         let n = newton(a, b, self.normal);
         let way = b.support(-n) - a.support(n);
         let across = norm(way - n * n.dot(way));
-        let n = if across <= 1e-9 { n } else { planes(a, b, n) };
+        let n = if across <= 1e-9 { n } else { planes(a, b, n, WIDE) };
         if separation(a, b, n) > self.distance { self.along(a, b, n) } else { self }
     }
 }
@@ -165,14 +172,16 @@ fn newton(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
 }
 
 /// Widest turn that is tried, rad; then 0.4 of it, and so on for so many rounds.
-const WIDEST: f64 = 0.1;
-const CUTS: usize = 15;
+const WIDE: f64 = 0.1;
+/// The same where the search has no direction to start from.
+const WIDEST: f64 = 0.5;
+const CUTS: usize = 16;
 
 /// As [`newton`], where a corner or an edge meets a curved surface. Each supporting vector x bounds the separation by n·x from
 /// above; the best direction under the bounds of the five directions around the best one so far is the next to try.
-fn planes(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
+fn planes(a: &Placed, b: &Placed, n: V3<f64>, wide: f64) -> V3<f64> {
     let apart = |n: V3<f64>| b.support(-n) - a.support(n);
-    let (mut best, mut gain, mut wide) = (n, separation(a, b, n), WIDEST);
+    let (mut best, mut gain, mut wide) = (n, separation(a, b, n), wide);
     for _ in 0..CUTS {
         let u = across(best);
         let v = best.cross(u);
