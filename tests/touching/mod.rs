@@ -131,7 +131,8 @@ pub fn cubes(masses: &[f64], half: f64, own: Surface, floor: Collider) -> Model 
     for c in m.colliders.iter_mut().skip(1) {
         c.form = ContactForm::Cuboid { half: [half; 3] };
     }
-    m.set_colliders(std::mem::take(&mut m.colliders));
+    let colliders = std::mem::take(&mut m.colliders);
+    m.set_colliders(colliders);
     m
 }
 
