@@ -8,6 +8,7 @@ pub mod drawing;
 pub mod evaluate;
 pub mod inspect;
 pub mod load;
+mod drop;
 mod outcome;
 pub mod run;
 pub mod scene;
