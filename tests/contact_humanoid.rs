@@ -147,7 +147,7 @@ fn explore_drops() {
         }
         let s = w.stats();
         println!(
-            "h {h} seed {seed}: worst {:.4} mm, at rest {:.6} mm, grown {grown:.1e} J, kinetic at end {last:.1e}, trimmed {:.2e}, us {:.0}, contacts {}, halvings {}, unsettled {}, guarded {} stop {:.3} div {}",
+            "h {h} seed {seed}: worst {:.4} mm, at rest {:.6} mm, grown {grown:.1e} J, kinetic at end {last:.1e}, trimmed {:.2e}, us {:.0}, contacts {}, halvings {}, unsettled {}, guarded {} stop {:.3} residual {:.1e}",
             s.worst_penetration * 1e3,
             deep * 1e3,
             s.trimmed_energy,

@@ -225,6 +225,8 @@ pub struct StepReport {
     pub guarded_energy: f64,
     /// Energy that contacts would have made out of the error of the step, and that was taken out, J.
     pub trimmed_energy: f64,
+    /// What the rows of contacts were left with at most, m/s.
+    pub residual: f64,
     /// A 3DOF group was at its pole.
     pub at_pole: bool,
     /// The new state would not have been finite: it was not taken.
@@ -321,6 +323,7 @@ impl Rbx {
             self.state.copy_from(&self.before);
             report.diverged = true;
         }
+        report.residual = self.axes.residual();
         self.observe(m, s);
         report
     }

@@ -40,6 +40,9 @@ pub struct Stats {
     pub worst_stop_violation: f64,
     /// Energy that steps in contact would have made out of nothing, and that was taken out of the velocities, J.
     pub trimmed_energy: f64,
+    /// What the rows of contacts were left with at the end of a step at most: how far a velocity is from where Coulomb's law
+    /// wants it, m/s.
+    pub worst_residual: f64,
     /// The deepest penetration of two bodies at the start or the end of a step, m.
     pub worst_penetration: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
@@ -216,6 +219,7 @@ impl World {
         s.halvings += u64::from(report.halvings);
         s.guarded_pieces += u64::from(report.guarded);
         s.guarded_energy += report.guarded_energy;
+        s.worst_residual = s.worst_residual.max(report.residual);
         s.trimmed_energy += report.trimmed_energy;
         s.worst_stop_violation = self.engine.axes.worst_stop;
         s.pole_steps += u64::from(report.at_pole);
