@@ -85,7 +85,7 @@ impl Rbx {
                 }
                 end @ (End::Converged | End::Unsettled) => {
                     report.unsettled |= matches!(end, End::Unsettled);
-                    self.take(m, mid, part.h);
+                    self.take(m, mid, (part.h, part.gravity));
                     self.pay(m, &mid.start, part.gravity, report);
                 }
                 End::NoContraction => {
@@ -167,7 +167,7 @@ impl Rbx {
         self.axes.prepare(m, &start, s.effects);
         let bounds = (s.gravity, s.h, s.passes.max(ENOUGH));
         self.axes.settle(m, &mut self.ws, mid.start.as_ref(), bounds, &mut self.qdd);
-        self.take(m, mid, s.h);
+        self.take(m, mid, (s.h, s.gravity));
         mid.forget();
     }
 
@@ -202,15 +202,17 @@ impl Rbx {
     }
 
     /// Takes the step with the accelerations of the last pass.
-    fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
+    fn take(&mut self, m: &Model, mid: &mut Midpoint, (h, gravity): (f64, [f64; 3])) {
         self.axes.finish(m, &self.ws, &mid.middle.q, (h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
         self.axes.add_damping_work(m, &mut self.ws, (&mid.middle.q, &mid.start.v), (h, &self.qdd));
+        self.axes.book_contacts(m, (&mid.middle.q, &mid.start.v, &self.qdd), (h, self.whole_step));
         for (v, (v0, a)) in self.state.v.iter_mut().zip(mid.start.v.iter().zip(&self.qdd)) {
             *v = v0 + h * a;
         }
         self.take_speeds(mid, h);
         if self.axes.lift(m, &self.ws, (&mid.middle.q, &mid.start.v, &self.qdd), h, &mut self.lift) {
+            self.book_lift(m, Some(&mid.middle.q), (h, gravity));
             mid.u.iter_mut().zip(&self.lift).for_each(|(u, lift)| *u += lift);
         }
         self.axes.round_speeds(m, &mut self.state.v);

@@ -314,8 +314,9 @@ impl World {
         self.state().rotor_energy(&self.model, self.engine.axes.drives.iter().map(|d| d.rotor_inertia))
     }
 
-    /// Work of the drives and losses at the axes since the start or the last reset, J. With [`World::energy`] it shows the
-    /// error of the integrator: what the energy has gained beyond `drives − losses`.
+    /// Work of the drives, losses at the axes and at contacts since the start or the last reset, J. With [`World::energy`] and
+    /// what the counters say was taken out it shows the error of the integrator: what the energy has gained beyond
+    /// `drives − losses − contacts`.
     pub fn work(&self) -> Work {
         self.engine.axes.work
     }
