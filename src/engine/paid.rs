@@ -7,7 +7,7 @@
 
 use super::forest::{Forest, Islands};
 use super::rbx::{Rbx, State, StepReport};
-use crate::dynamics::{Energy, Kinematics, body_energy, kinematics};
+use crate::dynamics::{Energy, Kinematics, body_energy, energy, kinematics};
 use crate::math::V3;
 use crate::model::Model;
 
@@ -43,8 +43,10 @@ impl Paid {
 
 impl Rbx {
     /// Ends a piece of a step that began with the state `start` (of `Contacts::start`).
-    pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) {
-        let Some(mut paid) = self.paid.take() else { return };
+    /// Returns what even standing still does not pay for: bodies that were lifted out of each other, J.
+    pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) -> f64 {
+        let Some(mut paid) = self.paid.take() else { return 0.0 };
+        let mut owed = 0.0;
         if self.touched(&mut paid) {
             self.balance(m, &mut paid, start, gravity);
             for body in 1..m.bodies.len() {
@@ -56,9 +58,18 @@ impl Rbx {
             }
             for account in paid.accounts.iter().filter(|a| a.share < 1.0) {
                 report.trimmed_energy += (1.0 - account.share * account.share) * account.after.kinetic;
+                owed += (-account.held()).max(0.0);
             }
         }
         self.paid = Some(paid);
+        owed
+    }
+
+    /// Potential energy of a state, J.
+    pub(super) fn potential(&mut self, m: &Model, gravity: [f64; 3]) -> f64 {
+        let Some(paid) = &mut self.paid else { return 0.0 };
+        kinematics(m, &mut paid.kinematics, &self.state.q, &self.state.v);
+        energy(m, &paid.kinematics, gravity).potential
     }
 
     /// Books the potential energy that keeping bodies out of each other makes, moving them with `self.lift` for h seconds, as
@@ -133,14 +144,18 @@ impl Rbx {
 }
 
 impl Account {
+    /// Kinetic energy that is paid for, without the work at the end of the step.
+    fn held(&self) -> f64 {
+        self.before.kinetic + self.before.potential - self.after.potential + self.paid.0
+    }
+
     /// The share s ≤ 1 of the velocities with `s² T = E₀ − V + paid₀ + s paid₁`, or 1 if that is less than what there is.
     fn affordable(&self) -> f64 {
-        let held = self.before.kinetic + self.before.potential - self.after.potential + self.paid.0;
-        let (kinetic, by_end) = (self.after.kinetic, self.paid.1);
+        let (held, kinetic, by_end) = (self.held(), self.after.kinetic, self.paid.1);
         if kinetic <= held + by_end || kinetic <= 0.0 {
             return 1.0;
         }
         let share = (by_end + (by_end * by_end + 4.0 * kinetic * held.max(0.0)).sqrt()) / (2.0 * kinetic);
-        if share.is_finite() { share.max(0.0).min(1.0) } else { 1.0 }
+        if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
     }
 }

@@ -223,7 +223,7 @@ pub struct StepReport {
     pub guarded: u32,
     /// What they lost, J.
     pub guarded_energy: f64,
-    /// Energy that contacts would have made out of the error of the step, and that was taken out, J.
+    /// Energy that contacts would have made out of the error of the step, and that was taken out of speeds and heights, J.
     pub trimmed_energy: f64,
     /// A 3DOF group was at its pole.
     pub at_pole: bool,

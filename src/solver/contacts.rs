@@ -288,7 +288,7 @@ impl Contacts {
             let mut target = Target {
                 m,
                 ws,
-                response: &*response,
+                response,
                 rows: &mut *rows,
                 ids: &mut self.ids,
                 columns: &mut self.columns,
@@ -358,22 +358,10 @@ impl Contacts {
         }
     }
 
-    /// Asks the rows for the speeds that are missing in a motion with `qdd` and these `weight`s, so that nothing ends inside of
-    /// something else. False if none are.
-    pub(super) fn aim_lift(
-        &mut self,
-        m: &Model,
-        rows: &mut Rows,
-        pass: &Pass,
-        (qdd, weight): (&[f64], &[f64]),
-    ) -> bool {
-        if pass.mean {
-            for (u, (v0, (a, w))) in self.v1.iter_mut().zip(pass.v0.iter().zip(qdd.iter().zip(weight))) {
-                *u = v0 + w * pass.h * a;
-            }
-        } else {
-            end_velocities(m, pass, qdd, &mut self.v1);
-        }
+    /// Asks the rows for what is missing in a motion with these speeds (nv), so that nothing ends inside of something else. False
+    /// if nothing is.
+    pub(super) fn aim_lift(&mut self, m: &Model, rows: &mut Rows, pass: &Pass, speeds: impl Fn(&mut [f64])) -> bool {
+        speeds(&mut self.v1);
         kinematics(m, &mut self.end, pass.q, &self.v1);
         let mut wanted = false;
         for point in self.points.iter().filter(|p| p.is_live()) {
@@ -559,7 +547,7 @@ impl Point {
 
 /// Velocities at the end of the step (nv). A floating body's are advanced along the axes of the body in the middle of the step;
 /// where coordinates move with the velocities at the end, along those of the world.
-fn end_velocities(m: &Model, pass: &Pass, qdd: &[f64], out: &mut [f64]) {
+pub(super) fn end_velocities(m: &Model, pass: &Pass, qdd: &[f64], out: &mut [f64]) {
     for (v1, (v0, a)) in out.iter_mut().zip(pass.v0.iter().zip(qdd)) {
         *v1 = v0 + pass.h * a;
     }
@@ -652,7 +640,7 @@ fn crossing(p: [f64; 3]) -> f64 {
     let (a, b) = (2.0 * (p[0] - 2.0 * p[1] + p[2]), 4.0 * p[1] - 3.0 * p[0] - p[2]);
     let root = (b * b - 4.0 * a * p[0]).max(0.0).sqrt();
     let s = if b >= 0.0 { -2.0 * p[0] / (b + root) } else { (root - b) / (2.0 * a) };
-    if s.is_finite() { s.max(0.0).min(1.0) } else { 0.0 }
+    if s.is_finite() { s.clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// When a gap closes that opens with speed `u` and acceleration `a`; 0 if it is closed and not opening.

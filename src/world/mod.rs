@@ -38,7 +38,7 @@ pub struct Stats {
     pub guarded_energy: f64,
     /// By how much an axis was outside its range at most (a soft stop, a start there, an angle of a 3DOF group); rad or m.
     pub worst_stop_violation: f64,
-    /// Energy that steps in contact would have made out of nothing, and that was taken out of the velocities, J.
+    /// Energy that steps in contact would have made out of nothing, and that was taken out of speeds and heights, J.
     pub trimmed_energy: f64,
     /// The deepest penetration of two bodies at the start or the end of a step, m.
     pub worst_penetration: f64,
