@@ -94,9 +94,9 @@ impl Rbx {
                 }
                 end @ (End::Converged | End::Unsettled) => {
                     report.unsettled |= matches!(end, End::Unsettled);
-                    self.take(m, mid, part.h);
+                    self.take(m, mid, (part.h, part.gravity));
                     let owed = self.pay(m, &mid.start, part.gravity, report);
-                    self.lower(m, mid, part.h, (part.gravity, owed));
+                    report.trimmed_energy += self.lower(m, mid, part.h, (part.gravity, owed));
                 }
                 End::NoContraction => {
                     report.unsettled = true;
@@ -177,7 +177,7 @@ impl Rbx {
         self.axes.prepare(m, &start, s.effects);
         let bounds = (s.gravity, s.h, s.passes.max(ENOUGH));
         self.axes.settle(m, &mut self.ws, mid.start.as_ref(), bounds, &mut self.qdd);
-        self.take(m, mid, s.h);
+        self.take(m, mid, (s.h, s.gravity));
         mid.forget();
     }
 
@@ -212,12 +212,13 @@ impl Rbx {
     }
 
     /// Where even standing still would not pay for the height that a step has gained (`owed`, J), bodies are lifted out of each other
-    /// by less, and if that is not it, the whole step goes less far.
-    fn lower(&mut self, m: &Model, mid: &mut Midpoint, h: f64, (gravity, mut owed): ([f64; 3], f64)) {
+    /// by less, and if that is not it, the whole step goes less far. Returns by how much potential energy that is less, J.
+    fn lower(&mut self, m: &Model, mid: &mut Midpoint, h: f64, (gravity, mut owed): ([f64; 3], f64)) -> f64 {
         if owed <= 0.0 {
-            return;
+            return 0.0;
         }
         let mut full = self.potential(m, gravity);
+        let high = full;
         if mid.lifted {
             mid.u.iter_mut().zip(&self.lift).for_each(|(u, lift)| *u -= lift);
             self.move_from(m, mid, h);
@@ -233,7 +234,9 @@ impl Rbx {
             let share = affordable(full - self.potential(m, gravity), owed);
             mid.u.iter_mut().for_each(|u| *u *= share);
             self.move_from(m, mid, h);
+            full = self.potential(m, gravity);
         }
+        high - full
     }
 
     /// Moves from the start of the piece with its speeds.
@@ -243,16 +246,18 @@ impl Rbx {
     }
 
     /// Takes the step with the accelerations of the last pass.
-    fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
+    fn take(&mut self, m: &Model, mid: &mut Midpoint, (h, gravity): (f64, [f64; 3])) {
         self.axes.finish(m, &self.ws, &mid.middle.q, (h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
         self.axes.add_damping_work(m, &mut self.ws, (&mid.middle.q, &mid.start.v), (h, &self.qdd));
+        self.axes.book_contacts(m, (&mid.middle.q, &mid.start.v, &self.qdd), (h, self.whole_step));
         for (v, (v0, a)) in self.state.v.iter_mut().zip(mid.start.v.iter().zip(&self.qdd)) {
             *v = v0 + h * a;
         }
         self.take_speeds(mid, h);
         mid.lifted = self.axes.lift(m, &self.ws, (&mid.middle.q, &mid.start.v, &self.qdd), h, &mut self.lift);
         if mid.lifted {
+            self.book_lift(m, Some(&mid.middle.q), (h, gravity));
             mid.u.iter_mut().zip(&self.lift).for_each(|(u, lift)| *u += lift);
         }
         self.axes.round_speeds(m, &mut self.state.v);

@@ -8,6 +8,7 @@
 use super::forest::{Forest, Islands};
 use super::rbx::{Rbx, State, StepReport};
 use crate::dynamics::{Energy, Kinematics, body_energy, energy, kinematics};
+use crate::math::V3;
 use crate::model::Model;
 
 /// Buffers, per tree.
@@ -69,6 +70,21 @@ impl Rbx {
         let Some(paid) = &mut self.paid else { return 0.0 };
         kinematics(m, &mut paid.kinematics, &self.state.q, &self.state.v);
         energy(m, &paid.kinematics, gravity).potential
+    }
+
+    /// Books the potential energy that keeping bodies out of each other makes, moving them with `self.lift` for h seconds, as
+    /// given by contacts; to the first order of that way. `q` (nq) is where they are, if not at the state's.
+    pub(super) fn book_lift(&mut self, m: &Model, q: Option<&[f64]>, (h, gravity): (f64, [f64; 3])) {
+        let Some(paid) = &mut self.paid else { return };
+        let k = &mut paid.kinematics;
+        kinematics(m, k, q.unwrap_or(&self.state.q), &self.lift);
+        let momentum = |body: usize| {
+            let b = &m.bodies[body];
+            k.r[body].mv(k.v[body] * b.mass + k.w[body].cross(b.mc))
+        };
+        let g = V3::new(gravity[0], gravity[1], gravity[2]);
+        let raised: f64 = (1..m.bodies.len()).map(|body| -h * g.dot(momentum(body))).sum();
+        self.axes.work.contacts -= raised;
     }
 
     /// Joins the trees that contacts hold together; true if there are contacts that carry something.
@@ -140,6 +156,6 @@ impl Account {
             return 1.0;
         }
         let share = (by_end + (by_end * by_end + 4.0 * kinetic * held.max(0.0)).sqrt()) / (2.0 * kinetic);
-        if share.is_finite() { share.max(0.0).min(1.0) } else { 1.0 }
+        if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
     }
 }

@@ -223,7 +223,7 @@ pub struct StepReport {
     pub guarded: u32,
     /// What they lost, J.
     pub guarded_energy: f64,
-    /// Energy that contacts would have made out of the error of the step, and that was taken out, J.
+    /// Energy that contacts would have made out of the error of the step, and that was taken out of speeds and heights, J.
     pub trimmed_energy: f64,
     /// What the rows of contacts were left with at most, m/s.
     pub residual: f64,
@@ -305,6 +305,7 @@ impl Rbx {
         }
         self.before.copy_from(&self.state);
         self.whole_step = s.h;
+        self.axes.open_books();
         let explicit = s.integrator == Integrator::Rk4;
         if !(explicit && self.rk4(m, commands, s, &mut report)) {
             report.fell_back = explicit;
@@ -348,9 +349,11 @@ impl Rbx {
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
         self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
+        self.axes.book_contacts(m, (at.q, at.v, &self.qdd), (s.h, s.h));
         let lifted = self.axes.lift(m, &self.ws, (at.q, at.v, &self.qdd), s.h, &mut self.lift);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         if lifted {
+            self.book_lift(m, None, (s.h, s.gravity));
             self.unlifted.copy_from_slice(&self.state.q);
             move_coordinates(m, &self.unlifted, &self.lift, s.h, &mut self.state.q);
         }

@@ -49,13 +49,15 @@ pub struct StepStart<'a> {
     pub sweeps: u32,
 }
 
-/// Work at the axes since the start, J: summed over the steps as h·torque·mean speed.
+/// Work since the start, J: summed over the steps as h·torque·mean speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Done by the drives.
     pub drives: f64,
     /// Taken by damping, friction, stops, soft joints (which may give some of it back).
     pub losses: f64,
+    /// Taken by contacts: friction, rolling, impacts, less what keeping bodies out of each other lifts them by.
+    pub contacts: f64,
 }
 
 /// Laws and places of all axes. Makes its memory once.

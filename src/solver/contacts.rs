@@ -3,6 +3,8 @@
 //! Notation: J(q) takes velocities v to the velocity u of side 1 against side 0 at a contact, along (normal, tangent, tangent);
 //! 0, m, 1 mark the start, the middle and the end of a step of h. Derived in `docs/decisions/0016-contacts.md`.
 
+mod booked;
+
 use super::lifts::{Lift, LiftKind};
 use super::rows::{Kind, Rows, Solved};
 use crate::contact::{Detector, Placed, Touch};
@@ -110,6 +112,8 @@ pub struct Contacts {
     columns: BodyColumns,
     /// Blocks that give way by less (trace, 1/kg) do not: what two bodies of a locked limb do to each other is rounding.
     least: f64,
+    /// Per body: force of the contacts in the last step, N.
+    received: Vec<V3<f64>>,
     /// Step of the impulses of `old`, s.
     h: f64,
     /// The deepest penetration at the start of a step so far, m.
@@ -138,6 +142,7 @@ impl Contacts {
             ids: vec![],
             columns: BodyColumns::new(m),
             least: HELD / m.bodies.iter().map(|b| b.mass).sum::<f64>(),
+            received: vec![V3::default(); m.bodies.len()],
             h: 0.0,
             worst: 0.0,
             tempered: 0,
@@ -150,6 +155,7 @@ impl Contacts {
         self.points.clear();
         self.old.clear();
         self.rests.fill(false);
+        self.received.fill(V3::default());
         (self.h, self.worst) = (0.0, 0.0);
     }
 
@@ -282,7 +288,7 @@ impl Contacts {
             let mut target = Target {
                 m,
                 ws,
-                response: &*response,
+                response,
                 rows: &mut *rows,
                 ids: &mut self.ids,
                 columns: &mut self.columns,
@@ -634,7 +640,7 @@ fn crossing(p: [f64; 3]) -> f64 {
     let (a, b) = (2.0 * (p[0] - 2.0 * p[1] + p[2]), 4.0 * p[1] - 3.0 * p[0] - p[2]);
     let root = (b * b - 4.0 * a * p[0]).max(0.0).sqrt();
     let s = if b >= 0.0 { -2.0 * p[0] / (b + root) } else { (root - b) / (2.0 * a) };
-    if s.is_finite() { s.max(0.0).min(1.0) } else { 0.0 }
+    if s.is_finite() { s.clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// When a gap closes that opens with speed `u` and acceleration `a`; 0 if it is closed and not opening.

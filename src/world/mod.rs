@@ -38,7 +38,7 @@ pub struct Stats {
     pub guarded_energy: f64,
     /// By how much an axis was outside its range at most (a soft stop, a start there, an angle of a 3DOF group); rad or m.
     pub worst_stop_violation: f64,
-    /// Energy that steps in contact would have made out of nothing, and that was taken out of the velocities, J.
+    /// Energy that steps in contact would have made out of nothing, and that was taken out of speeds and heights, J.
     pub trimmed_energy: f64,
     /// What the rows of contacts were left with at the end of a step at most: how far a velocity is from where Coulomb's law
     /// wants it, m/s.
@@ -318,8 +318,9 @@ impl World {
         self.state().rotor_energy(&self.model, self.engine.axes.drives.iter().map(|d| d.rotor_inertia))
     }
 
-    /// Work of the drives and losses at the axes since the start or the last reset, J. With [`World::energy`] it shows the
-    /// error of the integrator: what the energy has gained beyond `drives − losses`.
+    /// Work of the drives, losses at the axes and at contacts since the start or the last reset, J. With [`World::energy`] and
+    /// what the counters say was taken out it shows the error of the integrator: what the energy has gained beyond
+    /// `drives − losses − contacts`.
     pub fn work(&self) -> Work {
         self.engine.axes.work
     }
