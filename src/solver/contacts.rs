@@ -18,6 +18,9 @@ const ERP: f64 = 0.2;
 const AIM: f64 = 1e-12;
 /// See `Contacts::least`: share of 1 / mass.
 const HELD: f64 = 1e-12;
+/// Rows that are left with more than this share of their velocities make energy: they are swept on, at most this often.
+const ROUGH: f64 = 1e-4;
+const EXTRA: u32 = 100;
 /// Gaps that differ by less are equal, m.
 const FLUSH: f64 = 1e-10;
 
@@ -260,6 +263,9 @@ impl Contacts {
         self.columns.forget();
         self.write(m, ws, (&*response, rows), pass, qdd);
         let mut solved = rows.solve(pass.sweeps, AIM);
+        if !solved.within(ROUGH) {
+            solved = rows.solve(EXTRA, ROUGH);
+        }
         self.take(rows);
         if self.bounce(rows, pass.h) {
             solved = rows.solve(pass.sweeps, AIM);
