@@ -54,8 +54,7 @@ struct Fall {
 impl Fall {
     fn new(m: &Arc<Model>, name: &'static str, z: f64) -> Result<Self, String> {
         let integrator = Integrator::by_name(name).unwrap_or_default();
-        let settings =
-            Settings { integrator, steps_per_interval: 1, control_interval_ns: STEP, ..Settings::default() };
+        let settings = Settings { integrator, steps_per_interval: 1, control_interval_ns: STEP, ..Settings::default() };
         let mut fresh = World::new(m.clone(), settings)?;
         let mut state = State::initial(m);
         state.set_base_pose(m, [0.0, 0.0, z], [0.0, 0.0, 0.0, 1.0]);

@@ -7,7 +7,7 @@
 
 use super::forest::{Forest, Islands};
 use super::rbx::{Rbx, State, StepReport};
-use crate::dynamics::{Energy, Kinematics, body_energy, kinematics};
+use crate::dynamics::{Energy, body_energy};
 use crate::model::Model;
 
 /// Buffers, per tree.
@@ -15,7 +15,6 @@ use crate::model::Model;
 pub(super) struct Paid {
     forest: Forest,
     islands: Islands,
-    kinematics: Kinematics,
     accounts: Vec<Account>,
 }
 
@@ -36,15 +35,19 @@ impl Paid {
     pub fn new(m: &Model) -> Self {
         let forest = Forest::of(m);
         let accounts = vec![Account::default(); forest.count];
-        Self { islands: Islands::new(forest.count), kinematics: Kinematics::new(m), accounts, forest }
+        Self { islands: Islands::new(forest.count), accounts, forest }
     }
 }
 
 impl Rbx {
     /// Ends a piece of a step that began with the state `start` (of `Contacts::start`).
     pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) {
-        let Some(mut paid) = self.paid.take() else { return };
+        let carried = self.axes.contacts().is_some_and(|c| c.carrying_bodies().next().is_some());
+        let Some(mut paid) = self.paid.take_if(|_| carried) else { return };
         if self.touched(&mut paid) {
+            if let Some(contacts) = self.axes.contacts_mut() {
+                contacts.arrive(m, &self.state.q, &self.state.v);
+            }
             self.balance(m, &mut paid, start, gravity);
             for body in 1..m.bodies.len() {
                 let tree = paid.islands.of(paid.forest.of_body[body]);
@@ -80,16 +83,15 @@ impl Rbx {
 
     /// Adds up the accounts of each island in its first tree, and finds its share.
     fn balance(&self, m: &Model, paid: &mut Paid, start: &State, gravity: [f64; 3]) {
-        let Paid { forest, islands, kinematics: k, accounts } = paid;
+        let Paid { forest, islands, accounts } = paid;
         let Some(contacts) = self.axes.contacts() else { return };
-        kinematics(m, k, &self.state.q, &self.state.v);
         let add = |to: &mut Energy, e: Energy| {
             (to.kinetic, to.potential) = (to.kinetic + e.kinetic, to.potential + e.potential)
         };
         for body in 1..m.bodies.len() {
             let account = &mut accounts[islands.of(forest.of_body[body])];
             add(&mut account.before, body_energy(m, contacts.start(), gravity, body));
-            add(&mut account.after, body_energy(m, k, gravity, body));
+            add(&mut account.after, body_energy(m, contacts.end(), gravity, body));
         }
         let softs = m.softs.iter().map(|s| m.body_of(s.v).map_or(forest.count, |b| forest.of_body[b]));
         for (tree, by) in forest.of_axis.iter().copied().chain(softs).zip(self.axes.paid_by()) {
