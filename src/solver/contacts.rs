@@ -523,8 +523,8 @@ impl Point {
         let block = t.rows.add(kind, axes.len(), t.ids);
         for (n, axis) in axes.iter().enumerate() {
             let (ids, out) = t.rows.response(block, n);
-            for push in self.pushes(middle, wrench(self, *axis)).iter().filter(|push| push.body != 0) {
-                t.columns.of(t.response, (t.m, t.ws, t.q), push.body).combine(push, ids, out);
+            for push in self.pushes(middle, wrench(self, *axis)) {
+                t.columns.of(t.response, (t.m, t.ws, t.q), push.body).combine(&push, ids, out);
             }
         }
         t.rows.seal(block);
@@ -550,9 +550,11 @@ impl Point {
         self.acts != [0, 0]
     }
 
-    /// A force and a torque (world) at the point on side 1, and their opposites on side 0.
-    fn pushes(&self, k: &Kinematics, (force, torque): (V3<f64>, V3<f64>)) -> [Push; 2] {
-        [(0, -1.0), (1, 1.0)].map(|(side, sign)| {
+    /// A force and a torque (world) at the point on side 1, and their opposites on side 0; none on the world.
+    #[inline(always)]
+    fn pushes(&self, k: &Kinematics, (force, torque): (V3<f64>, V3<f64>)) -> impl Iterator<Item = Push> {
+        let sides = [(0, -1.0), (1, 1.0)].into_iter().filter(|(side, _)| self.acts[*side] != 0);
+        sides.map(move |(side, sign)| {
             let body = self.acts[side];
             let (r, arm) = (&k.r[body], self.placed.point - k.p[body]);
             let (f, t) = (force * sign, torque * sign);

@@ -119,6 +119,9 @@ impl Scratch {
     /// else does.
     fn solve(&mut self, n: usize) {
         let count = self.unknowns.len();
+        if self.links.iter().all(|l| l.follows == NONE) {
+            return self.solve_symmetric(n);
+        }
         self.moved[..count * n].fill(0.0);
         for row in 0..n {
             for (unknown, factor) in self.moves(row) {
@@ -138,23 +141,26 @@ impl Scratch {
             row.iter_mut().zip(moved.chunks_exact(n)).for_each(|(to, v)| *to = along(u, v));
             row[i] += u.stiffness;
         }
-        self.found.clear();
-        if unknowns.iter().all(|u| u.along[1] == 0.0) && self.links.iter().all(|l| l.follows == NONE) {
-            return self.solve_symmetric();
-        }
         let (matrix, a) = (&self.matrix[..count * count], &self.a);
         self.lu.factorise(count, matrix, |i| SOFT * a[unknowns[i].row * (n + 1)]);
         self.lu.solve(|i| -along(&unknowns[i], velocity));
         self.lu.refine(|i, x| -along(&unknowns[i], velocity) - dot(&matrix[i * count..i * count + count], x));
+        self.found.clear();
         self.found.extend_from_slice(self.lu.solution());
     }
 
     /// The same where nothing slides: the matrix is a part of `Y Yᵀ + R`.
-    fn solve_symmetric(&mut self) {
-        let (count, unknowns, matrix) = (self.unknowns.len(), &self.unknowns, &self.matrix);
+    fn solve_symmetric(&mut self, n: usize) {
+        let (count, unknowns) = (self.unknowns.len(), &self.unknowns);
+        for (row, i) in self.matrix.chunks_exact_mut(count.max(1)).zip(unknowns) {
+            let from = &self.a[i.row * n..i.row * n + n];
+            row.iter_mut().zip(unknowns).for_each(|(to, k)| *to = from[k.row]);
+        }
+        let matrix = &self.matrix;
         let soft = |i: usize| SOFT * matrix[i * count + i];
         self.cholesky.factorise(count, |i, k| matrix[i * count + k] + if i == k { soft(i) } else { 0.0 });
         self.cholesky.solve(|i| -self.velocity[unknowns[i].row]);
+        self.found.clear();
         self.found.extend_from_slice(self.cholesky.solution());
         let (found, velocity) = (&self.found, &self.velocity);
         let left = |i: usize| -velocity[unknowns[i].row] - dot(&matrix[i * count..i * count + count], found);
@@ -171,7 +177,7 @@ impl Rows {
         self.fill(&mut s.a);
         let size = self.rows.len().max(1);
         let most = (TRIES * LARGE.pow(3) / size.pow(3)).clamp(TRIES, MANY).min(tries);
-        let mut tries = 0;
+        let (mut tries, mut there) = (0, true);
         self.keep(&mut s.best);
         while residual > wanted && tries < most {
             tries += 1;
@@ -188,13 +194,16 @@ impl Rows {
                 (0..SWEEPS * tries as u32).for_each(|_| _ = self.sweep());
                 better = self.lower(&mut residual);
             }
+            there = better;
             if better {
                 self.keep(&mut s.best);
             } else if residual <= ROUNDING * scale {
                 break;
             }
         }
-        self.restore(&s.best);
+        if !there {
+            self.restore(&s.best);
+        }
         self.finish = s;
         (residual, tries as u32)
     }
