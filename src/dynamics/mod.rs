@@ -33,7 +33,7 @@ pub use energy::{Energy, Momentum, body_energy, energy, momentum};
 pub use integrate::{coordinate_rates, exponential_step, move_coordinates, normalize, turn};
 pub use joint::joint_transform;
 pub use joint_force::{JointForces, Outside};
-pub use kinematics::{Kinematics, body_pose, kinematics, link_pose, link_twist};
+pub use kinematics::{Kinematics, Posed, body_pose, kinematics, kinematics_of, link_pose, link_twist};
 pub use layout::{CHUNK, Layout};
 pub use response::{Mobility, Push, Response};
 pub use rnea::rnea;

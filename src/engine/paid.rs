@@ -16,6 +16,7 @@ use crate::model::Model;
 pub(super) struct Paid {
     forest: Forest,
     islands: Islands,
+    /// Of states that are not shown.
     kinematics: Kinematics,
     accounts: Vec<Account>,
 }
@@ -45,9 +46,13 @@ impl Rbx {
     /// Ends a piece of a step that began with the state `start` (of `Contacts::start`).
     /// Returns what even standing still does not pay for: bodies that were lifted out of each other, J.
     pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) -> f64 {
-        let Some(mut paid) = self.paid.take() else { return 0.0 };
+        let carried = self.axes.contacts().is_some_and(|c| c.carrying_bodies().next().is_some());
+        let Some(mut paid) = self.paid.take_if(|_| carried) else { return 0.0 };
         let mut owed = 0.0;
         if self.touched(&mut paid) {
+            if let Some(contacts) = self.axes.contacts_mut() {
+                contacts.arrive(m, &self.state.q, &self.state.v);
+            }
             self.balance(m, &mut paid, start, gravity);
             for body in 1..m.bodies.len() {
                 let tree = paid.islands.of(paid.forest.of_body[body]);
@@ -107,16 +112,15 @@ impl Rbx {
 
     /// Adds up the accounts of each island in its first tree, and finds its share.
     fn balance(&self, m: &Model, paid: &mut Paid, start: &State, gravity: [f64; 3]) {
-        let Paid { forest, islands, kinematics: k, accounts } = paid;
+        let Paid { forest, islands, accounts, .. } = paid;
         let Some(contacts) = self.axes.contacts() else { return };
-        kinematics(m, k, &self.state.q, &self.state.v);
         let add = |to: &mut Energy, e: Energy| {
             (to.kinetic, to.potential) = (to.kinetic + e.kinetic, to.potential + e.potential)
         };
         for body in 1..m.bodies.len() {
             let account = &mut accounts[islands.of(forest.of_body[body])];
             add(&mut account.before, body_energy(m, contacts.start(), gravity, body));
-            add(&mut account.after, body_energy(m, k, gravity, body));
+            add(&mut account.after, body_energy(m, contacts.end(), gravity, body));
         }
         let softs = m.softs.iter().map(|s| m.body_of(s.v).map_or(forest.count, |b| forest.of_body[b]));
         for (tree, by) in forest.of_axis.iter().copied().chain(softs).zip(self.axes.paid_by()) {

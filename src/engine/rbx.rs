@@ -4,7 +4,9 @@ use super::midpoint::Midpoint;
 use super::paid::Paid;
 use super::rk4::Stages;
 use super::sleep::Sleep;
-use crate::dynamics::{Kinematics, Scheme, Workspace, exponential_step, move_coordinates, normalize, write_damping};
+use crate::dynamics::{
+    Kinematics, Scheme, Workspace, exponential_step, kinematics, move_coordinates, normalize, write_damping,
+};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart, write_softs};
@@ -327,6 +329,21 @@ impl Rbx {
         report.residual = self.axes.residual();
         self.observe(m, s);
         report
+    }
+
+    /// Fills `k` from the state.
+    pub fn poses(&mut self, m: &Model, k: &mut Kinematics) {
+        match self.axes.contacts_mut() {
+            None => kinematics(m, k, &self.state.q, &self.state.v),
+            Some(contacts) => k.copy_from(contacts.arrive(m, &self.state.q, &self.state.v)),
+        }
+    }
+
+    /// What stands on the world has been moved with it.
+    pub fn moved(&mut self) {
+        if let Some(contacts) = self.axes.contacts_mut() {
+            contacts.forget();
+        }
     }
 
     /// The contacts of the last step that carry something, at these poses.

@@ -401,16 +401,21 @@ impl AxisSet {
 
     /// Do contacts make the step from its start, or to this state, anything but smooth?
     pub fn collides(&mut self, m: &Model, end: Option<StateRef>) -> bool {
-        let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) else { return false };
+        let Some(contacts) = self.contacts_mut() else { return false };
         match end {
             None => contacts.touching(),
             Some(s) => contacts.overlap(m, s.q, s.v),
         }
     }
 
+    /// The same, to be changed.
+    pub fn contacts_mut(&mut self) -> Option<&mut Contacts> {
+        self.couplings.as_mut().and_then(|c| c.contacts.as_mut())
+    }
+
     /// Tells the contacts which bodies rest.
     pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
-        if let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) {
+        if let Some(contacts) = self.contacts_mut() {
             contacts.rest(rests);
         }
     }

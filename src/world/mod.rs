@@ -7,7 +7,7 @@ mod pose;
 mod settings;
 mod snapshot;
 
-use crate::dynamics::{Energy, Kinematics, Momentum, energy, kinematics, link_pose, link_twist, momentum};
+use crate::dynamics::{Energy, Kinematics, Momentum, energy, link_pose, link_twist, momentum};
 use crate::engine::{Rbx, State, StepSettings};
 use crate::math::{Pose, Twist};
 use crate::model::{Effects, Model};
@@ -251,7 +251,7 @@ impl World {
     }
 
     fn update(&mut self) {
-        kinematics(&self.model, &mut self.kinematics, &self.engine.state.q, &self.engine.state.v);
+        self.engine.poses(&self.model, &mut self.kinematics);
         if self.engine.axes.contacts().is_some() {
             self.show_contacts();
         }
