@@ -44,7 +44,9 @@ fn total(w: &World) -> f64 {
 #[test]
 fn a_ball_rolls_down_an_incline() {
     let angle: f64 = 20f64.to_radians();
-    for (integrator, order) in [(Integrator::ImplicitMidpoint, 2), (Integrator::SemiImplicitEuler, 1), (Integrator::Rk4, 2)] {
+    for (integrator, order) in
+        [(Integrator::ImplicitMidpoint, 2), (Integrator::SemiImplicitEuler, 1), (Integrator::Rk4, 2)]
+    {
         let mut last = f64::INFINITY;
         for h in [4e-3, 2e-3, 1e-3] {
             let s = Settings { control_interval_ns: (h * 1e9) as i64, integrator, ..incline(angle) };
@@ -242,7 +244,11 @@ fn towers() {
             let before = total(&w);
             run(&mut w, 10.0);
             let x = (0..5).map(|k| w.state().q[7 * k].hypot(w.state().q[7 * k + 1])).fold(0.0, f64::max);
-            println!("tower 1:{top} at {h}: sinks {:e}, aside {x:e}, energy {:e}", 0.9 - w.state().q[30], total(&w) - before);
+            println!(
+                "tower 1:{top} at {h}: sinks {:e}, aside {x:e}, energy {:e}",
+                0.9 - w.state().q[30],
+                total(&w) - before
+            );
             assert!(x < 1e-9 && (w.state().q[30] - 0.9).abs() < 1e-6);
             assert!(total(&w) - before < 1e-4 && w.energy().kinetic < 1e-12);
         }

@@ -125,6 +125,6 @@ impl Account {
             return 1.0;
         }
         let share = (by_end + (by_end * by_end + 4.0 * kinetic * held.max(0.0)).sqrt()) / (2.0 * kinetic);
-        if share.is_finite() { share.max(0.0).min(1.0) } else { 1.0 }
+        if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
     }
 }

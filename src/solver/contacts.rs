@@ -145,6 +145,12 @@ impl Contacts {
         })
     }
 
+    /// How far two bodies that are near come towards each other within the step, as a multiple of the thickness of the
+    /// thinner one ([`Detector::fastest`]).
+    pub fn fastest(&self) -> f64 {
+        self.detector.fastest()
+    }
+
     /// Forgets the steps so far.
     pub fn reset(&mut self) {
         self.points.clear();
@@ -282,7 +288,7 @@ impl Contacts {
             let mut target = Target {
                 m,
                 ws,
-                response: &*response,
+                response,
                 rows: &mut *rows,
                 ids: &mut self.ids,
                 columns: &mut self.columns,
@@ -646,7 +652,7 @@ fn crossing(p: [f64; 3]) -> f64 {
     let (a, b) = (2.0 * (p[0] - 2.0 * p[1] + p[2]), 4.0 * p[1] - 3.0 * p[0] - p[2]);
     let root = (b * b - 4.0 * a * p[0]).max(0.0).sqrt();
     let s = if b >= 0.0 { -2.0 * p[0] / (b + root) } else { (root - b) / (2.0 * a) };
-    if s.is_finite() { s.max(0.0).min(1.0) } else { 0.0 }
+    if s.is_finite() { s.clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// When a gap closes that opens with speed `u` and acceleration `a`; 0 if it is closed and not opening.
