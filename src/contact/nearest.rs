@@ -171,20 +171,24 @@ fn newton(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
     best
 }
 
-/// Widest turn that is tried, rad; then 0.4 of it, and so on for so many rounds.
+/// Widest turn that is tried, rad.
 const WIDE: f64 = 0.1;
 /// The same where the search has no direction to start from.
 const WIDEST: f64 = 0.5;
-const CUTS: usize = 20;
+/// Rounds at most.
+const CUTS: usize = 48;
+/// Directions are searched down to this, rad.
+const FINE: f64 = 1e-8;
 /// Supporting vectors of directions that gained nothing, which are kept.
 const KEPT: usize = 3;
 
 /// As [`newton`], where a corner or an edge meets a curved surface. Each supporting vector x bounds the separation by n·x from
 /// above; the best direction under the bounds of the five directions around the best one so far, and of the last ones that
-/// bounds promised too much of, is the next to try. What the way to it came up against is not yet to be searched finer.
-fn planes(a: &Placed, b: &Placed, n: V3<f64>, wide: f64) -> V3<f64> {
+/// bounds promised too much of, is the next to try. Only what gains nothing makes the search finer: along a ridge that is
+/// curved, a search that narrows with every step ends before its top.
+fn planes(a: &Placed, b: &Placed, n: V3<f64>, widest: f64) -> V3<f64> {
     let apart = |n: V3<f64>| b.support(-n) - a.support(n);
-    let (mut best, mut gain, mut wide) = (n, separation(a, b, n), wide);
+    let (mut best, mut gain, mut wide) = (n, separation(a, b, n), widest);
     let mut kept = [apart(n); KEPT];
     for cut in 0..CUTS {
         let u = across(best);
@@ -192,19 +196,19 @@ fn planes(a: &Placed, b: &Placed, n: V3<f64>, wide: f64) -> V3<f64> {
         let bound = |way: V3<f64>| [way.dot(best), way.dot(u), way.dot(v)];
         let at = |x: f64, y: f64| bound(apart(best + (u * x + v * y) * (0.5 * wide)));
         let [p, q, r] = kept.map(bound);
-        let (x, y) = highest(&[at(0.0, 0.0), at(1.0, 0.0), at(-1.0, 0.0), at(0.0, 1.0), at(0.0, -1.0), p, q, r], wide);
-        let mut bounded = false;
-        if let Some(next) = unit(best + u * x + v * y) {
-            let new = separation(a, b, next);
-            if new > gain {
-                (best, gain) = (next, new);
-                bounded = x.abs().max(y.abs()) >= wide;
-            } else {
-                kept[cut % KEPT] = apart(next);
-            }
+        let around = [at(0.0, 0.0), at(1.0, 0.0), at(-1.0, 0.0), at(0.0, 1.0), at(0.0, -1.0), p, q, r];
+        let (x, y) = highest(&around, wide);
+        let next = unit(best + u * x + v * y).unwrap_or(best);
+        let new = separation(a, b, next);
+        if new > gain {
+            (best, gain) = (next, new);
+            wide = widest.min(1.5 * wide);
+        } else {
+            kept[cut % KEPT] = apart(next);
+            wide *= 0.3;
         }
-        if !bounded {
-            wide *= 0.4;
+        if wide < FINE {
+            break;
         }
     }
     best
