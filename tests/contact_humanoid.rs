@@ -131,7 +131,15 @@ fn explore_drops() {
                     || d > 1e-6
                     || b.worst_penetration - a.worst_penetration > 1e-4
                 {
-                    println!("step {i}: residual {:.1e} energy {:.6} by {d:.1e} trimmed {:.1e} contacts {} kin {:.3} -> {:.3}", b.worst_residual, before.1, b.trimmed_energy - a.trimmed_energy, w.contacts().len(), before.2.energy().kinetic, w.energy().kinetic);
+                    println!(
+                        "step {i}: residual {:.1e} energy {:.6} by {d:.1e} trimmed {:.1e} contacts {} kin {:.3} -> {:.3}",
+                        b.worst_residual,
+                        before.1,
+                        b.trimmed_energy - a.trimmed_energy,
+                        w.contacts().len(),
+                        before.2.energy().kinetic,
+                        w.energy().kinetic
+                    );
                 }
             }
             cpu += t.elapsed().as_secs_f64();

@@ -78,7 +78,7 @@ impl Progress {
 }
 
 /// What is counted in a run, and what it means.
-pub(super) fn counted(s: &Stats) -> [(u64, &'static str); 6] {
+pub(super) fn counted(s: &Stats) -> [(u64, &'static str); 7] {
     [
         (
             s.fallback_steps,
@@ -94,6 +94,11 @@ pub(super) fn counted(s: &Stats) -> [(u64, &'static str); 6] {
             s.guarded_pieces,
             "pieces of steps were not resolved by the shortest piece there is: the motion of the limbs was slowed down \
              to the energy that drives and weight had paid for (guarded_energy, J); take a finer step",
+        ),
+        (
+            s.fast_pieces,
+            "pieces of steps, the shortest there are, had bodies near each other that moved further than they are \
+             thick: they may have passed through each other; take a finer step",
         ),
         (s.pole_steps, "steps had a 3dof group at its pole: torques about its angles were bounded there"),
         (s.diverged_steps, "step would have given values that are not finite: the world stood still from there on"),

@@ -199,6 +199,8 @@ impl<'a> Plan<'a> {
             "fallback_steps": s.fallback_steps,
             "unsettled_steps": s.unsettled_steps,
             "halvings": s.halvings,
+            "divided_steps": s.divided_steps,
+            "fast_pieces": s.fast_pieces,
             "guarded_pieces": s.guarded_pieces,
             "guarded_energy": s.guarded_energy,
             "trimmed_energy": s.trimmed_energy,

@@ -32,14 +32,18 @@ pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, (reach, size): (
     let tolerance = 1e-6 * size + 0.02 * (-near.distance).max(0.0);
     let face = |n: V3<f64>| (separation(a, b, n), n);
     let faces = [s.features[0].normal.map(face), s.features[1].normal.map(|n| face(-n))];
+    let (found, mut best) = (near.distance, f64::NEG_INFINITY);
     for (distance, normal) in faces.into_iter().flatten() {
+        best = best.max(distance);
         if distance > near.distance {
             near = Nearest { distance, normal, ..near };
         }
     }
+    // A face decides where it is what the search has found, and not where the search was inexact.
+    let agree = best >= found - 1e-9 * size && best <= found + tolerance;
+    let near = if agree { near } else { near.polished(a, b) };
     let good = |side: usize| faces[side].filter(|f| f.0 >= near.distance - tolerance).map(|f| (side, f.1));
     let reference = good(0).or_else(|| good(1));
-    let near = if reference.is_none() { near.polished(a, b) } else { near };
     if let Some((side, n)) = reference {
         on_face(s, [a, b], (side, n), reach, out);
     }

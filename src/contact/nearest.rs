@@ -171,39 +171,51 @@ fn newton(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
     best
 }
 
-/// Widest turn that is tried, rad; then 0.4 of it, and so on for so many rounds.
+/// Widest turn that is tried, rad.
 const WIDE: f64 = 0.1;
 /// The same where the search has no direction to start from.
 const WIDEST: f64 = 0.5;
-const CUTS: usize = 16;
+/// Rounds at most.
+const CUTS: usize = 48;
+/// Directions are searched down to this, rad.
+const FINE: f64 = 1e-8;
+/// Supporting vectors of directions that gained nothing, which are kept.
+const KEPT: usize = 3;
 
 /// As [`newton`], where a corner or an edge meets a curved surface. Each supporting vector x bounds the separation by n·x from
-/// above; the best direction under the bounds of the five directions around the best one so far is the next to try.
-fn planes(a: &Placed, b: &Placed, n: V3<f64>, wide: f64) -> V3<f64> {
+/// above; the best direction under the bounds of the five directions around the best one so far, and of the last ones that
+/// bounds promised too much of, is the next to try. Only what gains nothing makes the search finer: along a ridge that is
+/// curved, a search that narrows with every step ends before its top.
+fn planes(a: &Placed, b: &Placed, n: V3<f64>, widest: f64) -> V3<f64> {
     let apart = |n: V3<f64>| b.support(-n) - a.support(n);
-    let (mut best, mut gain, mut wide) = (n, separation(a, b, n), wide);
-    for _ in 0..CUTS {
+    let (mut best, mut gain, mut wide) = (n, separation(a, b, n), widest);
+    let mut kept = [apart(n); KEPT];
+    for cut in 0..CUTS {
         let u = across(best);
         let v = best.cross(u);
-        let turns = [(0.0, 0.0), (wide, 0.0), (-wide, 0.0), (0.0, wide), (0.0, -wide)];
-        let bounds = turns.map(|(x, y)| {
-            let way = apart(best + (u * x + v * y) * 0.5);
-            [way.dot(best), way.dot(u), way.dot(v)]
-        });
-        let (x, y) = highest(&bounds, wide);
-        if let Some(next) = unit(best + u * x + v * y) {
-            let new = separation(a, b, next);
-            if new > gain {
-                (best, gain) = (next, new);
-            }
+        let bound = |way: V3<f64>| [way.dot(best), way.dot(u), way.dot(v)];
+        let at = |x: f64, y: f64| bound(apart(best + (u * x + v * y) * (0.5 * wide)));
+        let [p, q, r] = kept.map(bound);
+        let around = [at(0.0, 0.0), at(1.0, 0.0), at(-1.0, 0.0), at(0.0, 1.0), at(0.0, -1.0), p, q, r];
+        let (x, y) = highest(&around, wide);
+        let next = unit(best + u * x + v * y).unwrap_or(best);
+        let new = separation(a, b, next);
+        if new > gain {
+            (best, gain) = (next, new);
+            wide = widest.min(1.5 * wide);
+        } else {
+            kept[cut % KEPT] = apart(next);
+            wide *= 0.3;
         }
-        wide *= 0.4;
+        if wide < FINE {
+            break;
+        }
     }
     best
 }
 
 /// Where the least of the planes c + g·x + h·y is highest, within a square: at a corner of it, or where planes meet.
-fn highest(planes: &[[f64; 3]; 5], wide: f64) -> (f64, f64) {
+fn highest(planes: &[[f64; 3]], wide: f64) -> (f64, f64) {
     let mut best = (f64::NEG_INFINITY, (0.0, 0.0));
     let mut try_at = |x: f64, y: f64| {
         if x.abs() <= wide && y.abs() <= wide {
@@ -217,14 +229,14 @@ fn highest(planes: &[[f64; 3]; 5], wide: f64) -> (f64, f64) {
         try_at(x, y);
     }
     let minus = |i: usize, j: usize| [0, 1, 2].map(|k| planes[i][k] - planes[j][k]);
-    for i in 0..5 {
-        for j in i + 1..5 {
+    for i in 0..planes.len() {
+        for j in i + 1..planes.len() {
             let [c, g, h] = minus(i, j);
             for side in [wide, -wide] {
                 try_at(side, -(c + g * side) / h);
                 try_at(-(c + h * side) / g, side);
             }
-            for k in j + 1..5 {
+            for k in j + 1..planes.len() {
                 let [d, e, f] = minus(i, k);
                 let det = g * f - h * e;
                 try_at((h * d - c * f) / det, (c * e - g * d) / det);

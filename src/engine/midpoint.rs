@@ -24,7 +24,7 @@ const ENOUGH: u32 = 5;
 /// The same for a step whose axes do not all fit their laws: shorter ones would not make them fit.
 const ROUGH: f64 = 1e-2;
 /// A step is halved at most this many times.
-const DEEPEST: u32 = 6;
+pub(super) const DEEPEST: u32 = 6;
 
 /// Buffers of the rule.
 #[derive(Clone, Debug)]
@@ -40,6 +40,8 @@ pub(super) struct Midpoint {
     /// Accelerations of the last step, the first guess for the next one.
     guess: Vec<f64>,
     pub guard: Guard,
+    /// Is the piece longer than the shortest one?
+    may_divide: bool,
 }
 
 impl Midpoint {
@@ -52,6 +54,7 @@ impl Midpoint {
             lifted: false,
             guess: vec![0.0; m.nv],
             guard: Guard::new(m),
+            may_divide: false,
         }
     }
 
@@ -66,10 +69,12 @@ enum End {
     /// Out of passes, or some axis does not fit its law.
     Unsettled,
     NoContraction,
+    /// Bodies might pass through each other unseen.
+    TooFast,
 }
 
 impl Rbx {
-    /// One step of `s.h`, in halves, quarters … where the iteration does not contract.
+    /// One step of `s.h`, in halves, quarters … where the iteration does not contract, or bodies might pass through each other.
     pub(super) fn midpoint_step(
         &mut self,
         m: &Model,
@@ -84,7 +89,13 @@ impl Rbx {
             let piece = pieces >> depth;
             let part = StepSettings { h: s.h * f64::from(piece) / f64::from(pieces), ..*s };
             mid.start.copy_from(&self.state);
+            mid.may_divide = depth < DEEPEST;
             match self.iterate(m, mid, commands, &part, report) {
+                End::TooFast => {
+                    depth += 1;
+                    report.divided = true;
+                    continue;
+                }
                 End::NoContraction if depth < DEEPEST => {
                     self.state.copy_from(&mid.start);
                     mid.forget();
@@ -130,6 +141,12 @@ impl Rbx {
             sweeps: s.passes,
         };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
+        if self.axes.is_fast() {
+            if mid.may_divide {
+                return End::TooFast;
+            }
+            report.fast += 1;
+        }
         write_softs(m, &mut self.ws, &start, s.effects);
         write_damping(m, &mut self.ws, (s.h, Scheme::Middle), s.effects.body_damping);
         self.qdd.copy_from_slice(&mid.guess);

@@ -3,6 +3,7 @@
 mod apart;
 mod breaking;
 mod coupled;
+mod euler;
 mod forest;
 mod guard;
 mod honour;

@@ -4,12 +4,10 @@ use super::midpoint::Midpoint;
 use super::paid::Paid;
 use super::rk4::Stages;
 use super::sleep::Sleep;
-use crate::dynamics::{
-    Kinematics, Scheme, Workspace, exponential_step, kinematics, move_coordinates, normalize, write_damping,
-};
+use crate::dynamics::{Kinematics, Scheme, Workspace, kinematics, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart, write_softs};
+use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart};
 
 /// How the state is advanced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -221,6 +219,10 @@ pub struct StepReport {
     pub unsettled: bool,
     /// How many times a step was halved, because the iteration of the midpoint rule did not contract.
     pub halvings: u32,
+    /// The step was divided, because bodies that are near move further than they are thick.
+    pub divided: bool,
+    /// Pieces in which even so they did.
+    pub fast: u32,
     /// Pieces of the step that were slowed down to the energy that was paid for.
     pub guarded: u32,
     /// What they lost, J.
@@ -245,9 +247,11 @@ pub struct Rbx {
     pub(super) ws: Workspace<f64>,
     pub(super) qdd: Vec<f64>,
     pub(super) before: State,
+    /// State at the start of a piece of an Euler step.
+    pub(super) piece: State,
     /// Speeds that keep bodies out of each other.
     pub(super) lift: Vec<f64>,
-    unlifted: Vec<f64>,
+    pub(super) unlifted: Vec<f64>,
     /// `None` if nothing can touch.
     pub(super) paid: Option<Paid>,
     /// `None` if nothing ever rests.
@@ -266,6 +270,7 @@ impl Rbx {
             ws: Workspace::new(m),
             qdd: vec![0.0; m.nv],
             before: state.clone(),
+            piece: state.clone(),
             lift: vec![0.0; m.nv],
             unlifted: vec![0.0; m.nq],
             paid: axes.contacts().is_some().then(|| Paid::new(m)),
@@ -356,37 +361,12 @@ impl Rbx {
         self.axes.contacts().map_or(0.0, |c| c.worst.max(c.depth(k)))
     }
 
-    fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) {
-        let at = self.state.as_ref();
-        let start = StepStart { state: at, commands, h: s.h, whole: s.h, mean: false, sweeps: s.passes };
-        report.at_pole |= self.axes.prepare(m, &start, s.effects);
-        write_softs(m, &mut self.ws, &start, s.effects);
-        write_damping(m, &mut self.ws, (s.h, Scheme::Start), s.effects.body_damping);
-        report.unsettled = !self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
-        self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
-        self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
-        self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
-        self.axes.book_contacts(m, (at.q, at.v, &self.qdd), (s.h, s.h));
-        let lifted = self.axes.lift(m, &self.ws, (at.q, at.v, &self.qdd), s.h, &mut self.lift);
-        exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
-        if lifted {
-            self.book_lift(m, None, (s.h, s.gravity));
-            self.unlifted.copy_from_slice(&self.state.q);
-            move_coordinates(m, &self.unlifted, &self.lift, s.h, &mut self.state.q);
-        }
-        self.axes.round_speeds(m, &mut self.state.v);
-        self.state.read_angles(m);
-        let before = std::mem::take(&mut self.before);
-        self.pay(m, &before, s.gravity, report);
-        self.before = before;
-    }
-
     /// False, with the state as before, if the step is not smooth.
     fn rk4(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) -> bool {
         let start =
             StepStart { state: self.state.as_ref(), commands, h: s.h, whole: s.h, mean: true, sweeps: s.passes };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
-        if !self.axes.is_smooth(m) || self.axes.collides(m, None) {
+        if !self.axes.is_smooth(m) || self.axes.is_fast() || self.axes.collides(m, None) {
             return false;
         }
         let Some(mut st) = self.stages.take() else { return false };

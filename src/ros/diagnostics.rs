@@ -126,6 +126,8 @@ impl Diagnostics {
             pair("fallback steps", latest.stats.fallback_steps),
             pair("unsettled steps", latest.stats.unsettled_steps),
             pair("halvings", latest.stats.halvings),
+            pair("divided steps", latest.stats.divided_steps),
+            pair("fast pieces", latest.stats.fast_pieces),
             pair("guarded pieces", latest.stats.guarded_pieces),
             pair("guarded energy [J]", latest.stats.guarded_energy),
             pair("trimmed energy [J]", latest.stats.trimmed_energy),

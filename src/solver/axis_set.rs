@@ -430,6 +430,11 @@ impl AxisSet {
         self.couplings.as_ref().and_then(|c| c.contacts())
     }
 
+    /// May bodies that are near pass through each other within the step that was prepared?
+    pub fn is_fast(&self) -> bool {
+        self.contacts().is_some_and(|c| c.fastest() > 1.0)
+    }
+
     /// Gradients of the angles at these angles; true if a 3DOF group is at its pole.
     pub fn update_rates(&mut self, m: &Model, angles: &[[f64; 3]]) -> bool {
         let mut at_pole = false;

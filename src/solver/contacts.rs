@@ -166,6 +166,12 @@ impl Contacts {
         })
     }
 
+    /// How far two bodies that are near come towards each other within the step, as a multiple of the thickness of the
+    /// thinner one ([`Detector::fastest`]).
+    pub fn fastest(&self) -> f64 {
+        self.detector.fastest()
+    }
+
     /// Forgets the steps so far.
     pub fn reset(&mut self) {
         self.points.clear();

@@ -31,6 +31,10 @@ pub struct Stats {
     pub unsettled_steps: u64,
     /// How often a step was halved because its iteration did not contract: velocity products of light limbs that whirl.
     pub halvings: u64,
+    /// Steps that were divided, because bodies that were near moved further than they are thick.
+    pub divided_steps: u64,
+    /// Pieces of steps, the shortest there are, in which they still did: they may have passed through each other.
+    pub fast_pieces: u64,
     /// Pieces of steps that even the shortest piece did not resolve: their motion was slowed down to the energy that drives and
     /// weight had paid for.
     pub guarded_pieces: u64,
@@ -217,6 +221,8 @@ impl World {
         s.fallback_steps += u64::from(report.fell_back);
         s.unsettled_steps += u64::from(report.unsettled);
         s.halvings += u64::from(report.halvings);
+        s.divided_steps += u64::from(report.divided);
+        s.fast_pieces += u64::from(report.fast);
         s.guarded_pieces += u64::from(report.guarded);
         s.guarded_energy += report.guarded_energy;
         s.worst_residual = s.worst_residual.max(report.residual);
