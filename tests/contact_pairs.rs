@@ -88,7 +88,7 @@ fn a_half_space_meets_the_lowest_point_of_everything() {
     let mut rng = Random(7);
     for round in 0..500 {
         for form in forms(&mut rng) {
-            let mut scene = Scene::new(&[form.clone()]);
+            let mut scene = Scene::new(std::slice::from_ref(&form));
             let ground = pose(&mut rng, 0.2);
             let plane = scene::collider(ContactForm::HalfSpace, None, ground);
             let at = if round % 2 == 0 { 0 } else { 1 };

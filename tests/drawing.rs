@@ -151,11 +151,11 @@ fn names_are_text_and_nothing_is_a_picture_too() {
     assert!(Document::parse(&text).is_ok() && !text.contains("NaN") && !text.contains("inf"), "{text}");
 }
 
-/// Every kind of shape once, all loaded without a finding, all drawn.
+/// Every kind of shape once, all drawn; nothing is found but how some collide.
 #[test]
 fn the_gallery_shows_every_shape() {
     let robot = robot(Some("urdf/shapes.urdf"));
-    assert!(robot.findings.is_empty(), "{:?}", robot.findings);
+    assert!(robot.findings.iter().all(|f| f.code == "collides-as"), "{:?}", robot.findings);
     let shapes = || robot.description.links.iter().filter_map(|l| l.body.as_ref()).flat_map(|b| &b.shapes);
     let kinds: BTreeSet<&str> = shapes().map(|s| s.geometry.kind()).collect();
     let table = std::fs::read_to_string("docs/tags.md").unwrap();

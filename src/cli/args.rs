@@ -129,6 +129,15 @@ pub struct BenchArgs {
     /// CPU time to spend per measured function, s.
     #[arg(long, default_value_t = 0.5)]
     pub seconds: f64,
+    /// Instead: steps of 1 ms while the robot, its joints passive, falls onto the flat ground with its root link from this height, m.
+    #[arg(long, value_name = "Z")]
+    pub drop: Option<f64>,
+    /// Steps per fall.
+    #[arg(long, default_value_t = 600, requires = "drop", value_parser = clap::value_parser!(u32).range(1..))]
+    pub steps: u32,
+    /// Falls, of which the fastest is told.
+    #[arg(long, default_value_t = 5, requires = "drop", value_parser = clap::value_parser!(u32).range(1..))]
+    pub rounds: u32,
 }
 
 /// `evaluate`.

@@ -26,6 +26,9 @@ pub fn cpu_seconds() -> f64 {
 
 /// Measures and prints medians in µs per call.
 pub fn run(args: &BenchArgs) -> ExitCode {
+    if let Some(z) = args.drop {
+        return super::drop::run(args, z);
+    }
     let loaded = match load_or_say(args.packages.source(args.urdf.as_deref()), base_by_name(&args.base)) {
         Ok(loaded) => loaded,
         Err(failure) => return failure,

@@ -5,6 +5,7 @@ pub mod bench;
 pub mod check;
 pub mod commands;
 pub mod drawing;
+mod drop;
 pub mod evaluate;
 pub mod inspect;
 pub mod load;

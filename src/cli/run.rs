@@ -2,7 +2,7 @@
 
 use super::load::{Loaded, Source};
 use super::scene::{Assembly, Fault, Scene, Spare, assemble};
-use crate::description::{NOT_SIMULATED, Severity, render};
+use crate::description::{Severity, render};
 use crate::ros::parameters::Values;
 use crate::ros::{self, Environment, Robot, RosArgs};
 use std::ffi::OsString;
@@ -44,7 +44,6 @@ pub fn run(source: Source, args: RosArgs) -> ExitCode {
         urdf: loaded.published.as_str().into(),
         model: Arc::new(assembly.model),
         initial: assembly.initial,
-        pending: loaded.findings.iter().filter(|f| f.code == NOT_SIMULATED).map(|f| f.message.clone()).collect(),
     };
     match ros::run(&robot, &args, values, &environment) {
         Ok(()) => ExitCode::SUCCESS,

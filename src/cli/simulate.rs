@@ -167,12 +167,15 @@ impl<'a> Plan<'a> {
     fn ledger(&self, start: f64) -> serde_json::Value {
         let (e, work, stats) = (self.world.energy(), self.world.work(), self.world.stats());
         let end = e.kinetic + e.potential;
+        let taken = work.losses + work.contacts + stats.trimmed_energy + stats.guarded_energy;
         json!({
             "start": start,
             "end": end,
             "work_of_drives": work.drives,
             "losses": work.losses,
-            "unaccounted": end - start - work.drives + work.losses + stats.guarded_energy + stats.trimmed_energy,
+            "losses_at_contacts": work.contacts,
+            "trimmed": stats.trimmed_energy,
+            "unaccounted": end - start - work.drives + taken,
         })
     }
 

@@ -10,7 +10,6 @@ mod geometry;
 mod joints;
 mod links;
 mod origin;
-mod pending;
 mod report;
 mod rules;
 mod shapes;
@@ -23,7 +22,6 @@ mod xml;
 
 pub use finding::{Finding, Severity, render};
 pub use geometry::*;
-pub use pending::NOT_SIMULATED;
 pub use types::*;
 
 use element::Element;

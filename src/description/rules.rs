@@ -98,7 +98,6 @@ impl Tag {
     /// The same for an element whose children are read elsewhere.
     pub fn read_attributes<'a>(&self, element: &Element<'a>, report: &mut Report) -> Values<'a> {
         self.refuse_unknown_attributes(element, report);
-        super::pending::note(self.name, element, report);
         let value = |a: &Attribute, report: &mut Report| a.read(element, report).map(|value| (a.name, value));
         Values(self.attributes.iter().filter_map(|a| value(a, report)).collect())
     }

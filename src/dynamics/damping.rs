@@ -45,7 +45,7 @@ fn decay(d: f64) -> f64 {
 }
 
 /// k of [`Damped`] for a loss of d per second in steps of `h` seconds.
-fn rate(d: f64, (h, scheme): (f64, Scheme)) -> f64 {
+pub(super) fn rate(d: f64, (h, scheme): (f64, Scheme)) -> f64 {
     let decay = decay(d);
     match scheme {
         Scheme::Start => -libm::expm1(-decay * h) / h,

@@ -29,19 +29,79 @@ impl Kinematics {
             v: vec![V3::default(); n],
         }
     }
+
+    /// Takes over another one of the same model; allocates nothing.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.r.copy_from_slice(&other.r);
+        self.p.copy_from_slice(&other.p);
+        self.w.copy_from_slice(&other.w);
+        self.v.copy_from_slice(&other.v);
+    }
+
+    /// The same of these bodies only.
+    pub fn copy_of(&mut self, other: &Self, bodies: &[usize]) {
+        for i in bodies {
+            (self.r[*i], self.p[*i], self.w[*i], self.v[*i]) = (other.r[*i], other.p[*i], other.w[*i], other.v[*i]);
+        }
+    }
 }
 
 /// Fills `k` from the state `q` (nq), `v` (nv).
 pub fn kinematics(m: &Model, k: &mut Kinematics, q: &[f64], v: &[f64]) {
-    for i in 1..m.bodies.len() {
-        let b = &m.bodies[i];
-        let (r, p) = joint_transform(b, q);
-        let own = joint_velocity(b, q, v);
-        let (w0, v0, r0) = (k.w[b.parent], k.v[b.parent], k.r[b.parent]);
-        k.w[i] = r.tv(w0) + own.a;
-        k.v[i] = r.tv(w0.cross_add(p, v0)) + own.l;
-        k.p[i] = r0.mv(p) + k.p[b.parent];
-        k.r[i] = r0.mm(&r);
+    (1..m.bodies.len()).for_each(|i| one(m, k, (q, v), i));
+}
+
+/// As [`kinematics`], of these bodies only: ascending, with all that carry them.
+pub fn kinematics_of(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), bodies: &[usize]) {
+    bodies.iter().for_each(|i| one(m, k, (q, v), *i));
+}
+
+#[inline(always)]
+fn one(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), i: usize) {
+    let b = &m.bodies[i];
+    let (r, p) = joint_transform(b, q);
+    let own = joint_velocity(b, q, v);
+    let (w0, v0, r0) = (k.w[b.parent], k.v[b.parent], k.r[b.parent]);
+    k.w[i] = r.tv(w0) + own.a;
+    k.v[i] = r.tv(w0.cross_add(p, v0)) + own.l;
+    k.p[i] = r0.mv(p) + k.p[b.parent];
+    k.r[i] = r0.mm(&r);
+}
+
+/// Frames and velocities that know their state: to ask for the same again costs a comparison.
+#[derive(Clone, Debug)]
+pub struct Posed {
+    /// Those of the state.
+    pub k: Kinematics,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    known: bool,
+}
+
+impl Posed {
+    /// Of no state yet.
+    pub fn new(m: &Model) -> Self {
+        Self { k: Kinematics::new(m), q: vec![0.0; m.nq], v: vec![0.0; m.nv], known: false }
+    }
+
+    /// The model has moved: no state is known any more.
+    pub fn forget(&mut self) {
+        self.known = false;
+    }
+
+    /// Are they those of this state?
+    pub fn is_at(&self, q: &[f64], v: &[f64]) -> bool {
+        self.known && self.q == q && self.v == v
+    }
+
+    /// Makes them those of the state `q` (nq), `v` (nv).
+    pub fn update(&mut self, m: &Model, q: &[f64], v: &[f64]) {
+        if !self.is_at(q, v) {
+            kinematics(m, &mut self.k, q, v);
+            self.q.copy_from_slice(q);
+            self.v.copy_from_slice(v);
+            self.known = true;
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! Joints that break (J-18): who carries too much.
 
-use super::State;
-use crate::dynamics::JointForces;
+use super::{Integrator, State, StepSettings};
+use crate::dynamics::{JointForces, Outside, Scheme};
+use crate::math::V3;
 use crate::model::Model;
 
 /// A joint that carried more than its threshold.
@@ -32,13 +33,18 @@ impl BreakWatch {
         self.forces.begin(m, &state.q, &state.v);
     }
 
-    /// The joints that carried more than their threshold in the step of `h` seconds that led to this state, from the root
-    /// outwards.
-    pub fn end(&mut self, m: &Model, state: &State, gravity: [f64; 3], h: f64) -> &[Overload] {
-        self.forces.end(m, &state.q, &state.v);
+    /// The joints that carried more than their threshold in the step `s` that led to this state, from the root outwards.
+    /// `contacts` are the forces on each body in it, averaged, along the world's axes, N.
+    pub fn end(&mut self, m: &Model, state: &State, s: &StepSettings, contacts: &[V3<f64>]) -> &[Overload] {
+        let scheme = match s.integrator {
+            Integrator::SemiImplicitEuler => Scheme::Start,
+            Integrator::ImplicitMidpoint | Integrator::Rk4 => Scheme::Middle,
+        };
+        let damping = s.effects.body_damping.then_some((s.h, scheme));
+        self.forces.end(m, (&state.q, &state.v), &Outside { contacts, damping });
         self.overloads.clear();
         for (breakable, joint) in m.breakables.iter().enumerate() {
-            let f = self.forces.force(joint.body, gravity, h);
+            let f = self.forces.force(joint.body, s.gravity, s.h);
             let force = f.dot(f).sqrt();
             if force > joint.threshold {
                 self.overloads.push(Overload { breakable, force });

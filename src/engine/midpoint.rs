@@ -35,6 +35,8 @@ pub(super) struct Midpoint {
     middle: State,
     /// Speeds with which the coordinates move.
     u: Vec<f64>,
+    /// The last piece moved with `Rbx::lift`, too.
+    lifted: bool,
     /// Accelerations of the last step, the first guess for the next one.
     guess: Vec<f64>,
     pub guard: Guard,
@@ -49,6 +51,7 @@ impl Midpoint {
             middle: state.clone(),
             start: state,
             u: vec![0.0; m.nv],
+            lifted: false,
             guess: vec![0.0; m.nv],
             guard: Guard::new(m),
             may_divide: false,
@@ -102,8 +105,9 @@ impl Rbx {
                 }
                 end @ (End::Converged | End::Unsettled) => {
                     report.unsettled |= matches!(end, End::Unsettled);
-                    self.take(m, mid, part.h);
-                    self.pay(m, &mid.start, part.gravity, report);
+                    self.take(m, mid, (part.h, part.gravity));
+                    let owed = self.pay(m, &mid.start, part.gravity, report);
+                    report.trimmed_energy += self.lower(m, mid, part.h, (part.gravity, owed));
                 }
                 End::NoContraction => {
                     report.unsettled = true;
@@ -190,7 +194,7 @@ impl Rbx {
         self.axes.prepare(m, &start, s.effects);
         let bounds = (s.gravity, s.h, s.passes.max(ENOUGH));
         self.axes.settle(m, &mut self.ws, mid.start.as_ref(), bounds, &mut self.qdd);
-        self.take(m, mid, s.h);
+        self.take(m, mid, (s.h, s.gravity));
         mid.forget();
     }
 
@@ -224,16 +228,53 @@ impl Rbx {
         }
     }
 
+    /// Where even standing still would not pay for the height that a step has gained (`owed`, J), bodies are lifted out of each other
+    /// by less, and if that is not it, the whole step goes less far. Returns by how much potential energy that is less, J.
+    fn lower(&mut self, m: &Model, mid: &mut Midpoint, h: f64, (gravity, mut owed): ([f64; 3], f64)) -> f64 {
+        if owed <= 0.0 {
+            return 0.0;
+        }
+        let mut full = self.potential(m, gravity);
+        let high = full;
+        if mid.lifted {
+            mid.u.iter_mut().zip(&self.lift).for_each(|(u, lift)| *u -= lift);
+            self.move_from(m, mid, h);
+            let raised = full - self.potential(m, gravity);
+            let share = affordable(raised, owed);
+            mid.u.iter_mut().zip(&self.lift).for_each(|(u, lift)| *u += share * lift);
+            self.move_from(m, mid, h);
+            let now = self.potential(m, gravity);
+            (owed, full) = (owed - (full - now), now);
+        }
+        if owed > 0.0 {
+            self.state.q.copy_from_slice(&mid.start.q);
+            let share = affordable(full - self.potential(m, gravity), owed);
+            mid.u.iter_mut().for_each(|u| *u *= share);
+            self.move_from(m, mid, h);
+            full = self.potential(m, gravity);
+        }
+        high - full
+    }
+
+    /// Moves from the start of the piece with its speeds.
+    fn move_from(&mut self, m: &Model, mid: &Midpoint, h: f64) {
+        move_coordinates(m, &mid.start.q, &mid.u, h, &mut self.state.q);
+        self.state.read_angles(m);
+    }
+
     /// Takes the step with the accelerations of the last pass.
-    fn take(&mut self, m: &Model, mid: &mut Midpoint, h: f64) {
+    fn take(&mut self, m: &Model, mid: &mut Midpoint, (h, gravity): (f64, [f64; 3])) {
         self.axes.finish(m, &self.ws, &mid.middle.q, (h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
         self.axes.add_damping_work(m, &mut self.ws, (&mid.middle.q, &mid.start.v), (h, &self.qdd));
+        self.axes.book_contacts(m, (&mid.middle.q, &mid.start.v, &self.qdd), (h, self.whole_step));
         for (v, (v0, a)) in self.state.v.iter_mut().zip(mid.start.v.iter().zip(&self.qdd)) {
             *v = v0 + h * a;
         }
         self.take_speeds(mid, h);
-        if self.axes.lift(m, &self.ws, (&mid.middle.q, &mid.start.v, &self.qdd), h, &mut self.lift) {
+        mid.lifted = self.axes.lift(m, &self.ws, (&mid.middle.q, &mid.start.v, &self.qdd), h, &mut self.lift);
+        if mid.lifted {
+            self.book_lift(m, Some(&mid.middle.q), (h, gravity));
             mid.u.iter_mut().zip(&self.lift).for_each(|(u, lift)| *u += lift);
         }
         self.axes.round_speeds(m, &mut self.state.v);
@@ -245,4 +286,9 @@ impl Rbx {
             mid.forget();
         }
     }
+}
+
+/// The share of a rise that is paid for, if `owed` of it is not.
+fn affordable(raised: f64, owed: f64) -> f64 {
+    if raised > 0.0 { (1.0 - owed / raised).max(0.0) } else { 1.0 }
 }

@@ -7,7 +7,8 @@
 
 use super::forest::{Forest, Islands};
 use super::rbx::{Rbx, State, StepReport};
-use crate::dynamics::{Energy, Kinematics, body_energy, kinematics};
+use crate::dynamics::{Energy, Kinematics, body_energy, energy, kinematics};
+use crate::math::V3;
 use crate::model::Model;
 
 /// Buffers, per tree.
@@ -15,6 +16,7 @@ use crate::model::Model;
 pub(super) struct Paid {
     forest: Forest,
     islands: Islands,
+    /// Of states that are not shown.
     kinematics: Kinematics,
     accounts: Vec<Account>,
 }
@@ -42,9 +44,15 @@ impl Paid {
 
 impl Rbx {
     /// Ends a piece of a step that began with the state `start` (of `Contacts::start`).
-    pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) {
-        let Some(mut paid) = self.paid.take() else { return };
+    /// Returns what even standing still does not pay for: bodies that were lifted out of each other, J.
+    pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) -> f64 {
+        let carried = self.axes.contacts().is_some_and(|c| c.carrying_bodies().next().is_some());
+        let Some(mut paid) = self.paid.take_if(|_| carried) else { return 0.0 };
+        let mut owed = 0.0;
         if self.touched(&mut paid) {
+            if let Some(contacts) = self.axes.contacts_mut() {
+                contacts.arrive(m, &self.state.q, &self.state.v);
+            }
             self.balance(m, &mut paid, start, gravity);
             for body in 1..m.bodies.len() {
                 let tree = paid.islands.of(paid.forest.of_body[body]);
@@ -55,9 +63,33 @@ impl Rbx {
             }
             for account in paid.accounts.iter().filter(|a| a.share < 1.0) {
                 report.trimmed_energy += (1.0 - account.share * account.share) * account.after.kinetic;
+                owed += (-account.held()).max(0.0);
             }
         }
         self.paid = Some(paid);
+        owed
+    }
+
+    /// Potential energy of a state, J.
+    pub(super) fn potential(&mut self, m: &Model, gravity: [f64; 3]) -> f64 {
+        let Some(paid) = &mut self.paid else { return 0.0 };
+        kinematics(m, &mut paid.kinematics, &self.state.q, &self.state.v);
+        energy(m, &paid.kinematics, gravity).potential
+    }
+
+    /// Books the potential energy that keeping bodies out of each other makes, moving them with `self.lift` for h seconds, as
+    /// given by contacts; to the first order of that way. `q` (nq) is where they are, if not at the state's.
+    pub(super) fn book_lift(&mut self, m: &Model, q: Option<&[f64]>, (h, gravity): (f64, [f64; 3])) {
+        let Some(paid) = &mut self.paid else { return };
+        let k = &mut paid.kinematics;
+        kinematics(m, k, q.unwrap_or(&self.state.q), &self.lift);
+        let momentum = |body: usize| {
+            let b = &m.bodies[body];
+            k.r[body].mv(k.v[body] * b.mass + k.w[body].cross(b.mc))
+        };
+        let g = V3::new(gravity[0], gravity[1], gravity[2]);
+        let raised: f64 = (1..m.bodies.len()).map(|body| -h * g.dot(momentum(body))).sum();
+        self.axes.work.contacts -= raised;
     }
 
     /// Joins the trees that contacts hold together; true if there are contacts that carry something.
@@ -80,16 +112,15 @@ impl Rbx {
 
     /// Adds up the accounts of each island in its first tree, and finds its share.
     fn balance(&self, m: &Model, paid: &mut Paid, start: &State, gravity: [f64; 3]) {
-        let Paid { forest, islands, kinematics: k, accounts } = paid;
+        let Paid { forest, islands, accounts, .. } = paid;
         let Some(contacts) = self.axes.contacts() else { return };
-        kinematics(m, k, &self.state.q, &self.state.v);
         let add = |to: &mut Energy, e: Energy| {
             (to.kinetic, to.potential) = (to.kinetic + e.kinetic, to.potential + e.potential)
         };
         for body in 1..m.bodies.len() {
             let account = &mut accounts[islands.of(forest.of_body[body])];
             add(&mut account.before, body_energy(m, contacts.start(), gravity, body));
-            add(&mut account.after, body_energy(m, k, gravity, body));
+            add(&mut account.after, body_energy(m, contacts.end(), gravity, body));
         }
         let softs = m.softs.iter().map(|s| m.body_of(s.v).map_or(forest.count, |b| forest.of_body[b]));
         for (tree, by) in forest.of_axis.iter().copied().chain(softs).zip(self.axes.paid_by()) {
@@ -117,10 +148,14 @@ impl Rbx {
 }
 
 impl Account {
+    /// Kinetic energy that is paid for, without the work at the end of the step.
+    fn held(&self) -> f64 {
+        self.before.kinetic + self.before.potential - self.after.potential + self.paid.0
+    }
+
     /// The share s ≤ 1 of the velocities with `s² T = E₀ − V + paid₀ + s paid₁`, or 1 if that is less than what there is.
     fn affordable(&self) -> f64 {
-        let held = self.before.kinetic + self.before.potential - self.after.potential + self.paid.0;
-        let (kinetic, by_end) = (self.after.kinetic, self.paid.1);
+        let (held, kinetic, by_end) = (self.held(), self.after.kinetic, self.paid.1);
         if kinetic <= held + by_end || kinetic <= 0.0 {
             return 1.0;
         }

@@ -4,7 +4,7 @@ use super::midpoint::Midpoint;
 use super::paid::Paid;
 use super::rk4::Stages;
 use super::sleep::Sleep;
-use crate::dynamics::{Kinematics, Scheme, Workspace, normalize, write_damping};
+use crate::dynamics::{Kinematics, Scheme, Workspace, kinematics, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart};
@@ -227,8 +227,10 @@ pub struct StepReport {
     pub guarded: u32,
     /// What they lost, J.
     pub guarded_energy: f64,
-    /// Energy that contacts would have made out of the error of the step, and that was taken out, J.
+    /// Energy that contacts would have made out of the error of the step, and that was taken out of speeds and heights, J.
     pub trimmed_energy: f64,
+    /// What the rows of contacts were left with at most, m/s.
+    pub residual: f64,
     /// A 3DOF group was at its pole.
     pub at_pole: bool,
     /// The new state would not have been finite: it was not taken.
@@ -310,6 +312,7 @@ impl Rbx {
         }
         self.before.copy_from(&self.state);
         self.whole_step = s.h;
+        self.axes.open_books();
         let explicit = s.integrator == Integrator::Rk4;
         if !(explicit && self.rk4(m, commands, s, &mut report)) {
             report.fell_back = explicit;
@@ -328,8 +331,24 @@ impl Rbx {
             self.state.copy_from(&self.before);
             report.diverged = true;
         }
+        report.residual = self.axes.residual();
         self.observe(m, s);
         report
+    }
+
+    /// Fills `k` from the state.
+    pub fn poses(&mut self, m: &Model, k: &mut Kinematics) {
+        match self.axes.contacts_mut() {
+            None => kinematics(m, k, &self.state.q, &self.state.v),
+            Some(contacts) => k.copy_from(contacts.arrive(m, &self.state.q, &self.state.v)),
+        }
+    }
+
+    /// What stands on the world has been moved with it.
+    pub fn moved(&mut self) {
+        if let Some(contacts) = self.axes.contacts_mut() {
+            contacts.forget();
+        }
     }
 
     /// The contacts of the last step that carry something, at these poses.

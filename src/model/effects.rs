@@ -18,6 +18,22 @@ pub const EFFECT_NAMES: [&str; 12] = [
     "deactivation",
 ];
 
+/// What calls for each of them.
+pub const EFFECT_CAUSES: [&str; EFFECT_NAMES.len()] = [
+    "mass",
+    "<dynamics damping>",
+    "<dynamics friction>, <drive static_resistance>",
+    "<limit>",
+    "axes",
+    "<drive rotor_inertia>",
+    "<constraint cfm>",
+    "<mimic>",
+    "<constraint break_threshold>",
+    "<damping>",
+    "something to touch: a ground, a robot, a body",
+    "<deactivate>",
+];
+
 /// One switch per effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {

@@ -22,7 +22,7 @@ pub use collider::{Collider, Surface};
 pub use constraint::{Breakable, Coupling, SoftDof, Softness};
 pub use damping::BodyDamping;
 pub use drive::{DriveLimits, SERVO_TIME};
-pub use effects::{EFFECT_NAMES, Effects};
+pub use effects::{EFFECT_CAUSES, EFFECT_NAMES, Effects};
 pub use group::{EulerFrame, EulerRates, POLE, rotation};
 pub use join::Joined;
 pub use membership::Membership;

@@ -29,8 +29,6 @@ pub struct Robot {
     pub model: Arc<Model>,
     /// Where everything starts.
     pub initial: State,
-    /// What the URDF says and the simulation does not do yet, one line each.
-    pub pending: Vec<String>,
 }
 
 /// Simulates `robot` until SIGINT or SIGTERM. `Err` says what kept it from starting, or from going on.
@@ -134,7 +132,6 @@ fn start_report(plan: Plan, settings: &str, topics: &[String]) -> String {
     let mut text = format!("{}: '{}' from ", super::names::join(&plan.args.namespace, &plan.args.node), model.name);
     text += &format!("{}\n  {} links, {} axes, ", plan.robot.source, model.links.len(), model.axes.len());
     text += &format!("{:.3} kg, base {base}\n  {settings}\n", model.mass());
-    plan.robot.pending.iter().for_each(|p| text += &format!("  {p}\n"));
     text += &format!("  ROS domain {}, discovery range {}\n", plan.environment.domain, plan.environment.range);
     topics.iter().for_each(|t| text += &format!("  {t}\n"));
     text

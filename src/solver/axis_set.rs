@@ -49,13 +49,15 @@ pub struct StepStart<'a> {
     pub sweeps: u32,
 }
 
-/// Work at the axes since the start, J: summed over the steps as h·torque·mean speed.
+/// Work since the start, J: summed over the steps as h·torque·mean speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Done by the drives.
     pub drives: f64,
     /// Taken by damping, friction, stops, soft joints (which may give some of it back).
     pub losses: f64,
+    /// Taken by contacts: friction, rolling, impacts, less what keeping bodies out of each other lifts them by.
+    pub contacts: f64,
 }
 
 /// Laws and places of all axes. Makes its memory once.
@@ -399,16 +401,21 @@ impl AxisSet {
 
     /// Do contacts make the step from its start, or to this state, anything but smooth?
     pub fn collides(&mut self, m: &Model, end: Option<StateRef>) -> bool {
-        let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) else { return false };
+        let Some(contacts) = self.contacts_mut() else { return false };
         match end {
             None => contacts.touching(),
             Some(s) => contacts.overlap(m, s.q, s.v),
         }
     }
 
+    /// The same, to be changed.
+    pub fn contacts_mut(&mut self) -> Option<&mut Contacts> {
+        self.couplings.as_mut().and_then(|c| c.contacts.as_mut())
+    }
+
     /// Tells the contacts which bodies rest.
     pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
-        if let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) {
+        if let Some(contacts) = self.contacts_mut() {
             contacts.rest(rests);
         }
     }

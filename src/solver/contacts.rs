@@ -3,19 +3,29 @@
 //! Notation: J(q) takes velocities v to the velocity u of side 1 against side 0 at a contact, along (normal, tangent, tangent);
 //! 0, m, 1 mark the start, the middle and the end of a step of h. Derived in `docs/decisions/0016-contacts.md`.
 
+mod booked;
+
 use super::lifts::{Lift, LiftKind};
 use super::rows::{Kind, Rows, Solved};
 use crate::contact::{Detector, Placed, Touch};
-use crate::dynamics::{Columns, Kinematics, Layout, Push, Response, Workspace, kinematics};
+use crate::dynamics::{Columns, Kinematics, Layout, Posed, Push, Response, Workspace, kinematics, kinematics_of};
 use crate::math::V3;
 use crate::model::{JointType, LinkFrame, Model, Surface};
 
 /// Share of a penetration that one step takes back.
 const ERP: f64 = 0.2;
 /// Share of the velocities at the start to which the rows are solved if that is possible.
-const AIM: f64 = 1e-12;
+const AIM: f64 = 1e-9;
+/// More rows than this begin with sweeps; fewer go to the direct finish from the impulses of the last step, and are swept only
+/// where it does not help.
+const FEW: usize = 40;
+/// Tries of the direct finish: what it has not solved then stays near its impulses in the next pass or step.
+const TRIES: usize = 4;
 /// See `Contacts::least`: share of 1 / mass.
 const HELD: f64 = 1e-12;
+/// Rows that are left with more than this share of their velocities make energy: they are swept on, at most this often.
+const ROUGH: f64 = 1e-4;
+const EXTRA: u32 = 100;
 /// Gaps that differ by less are equal, m.
 const FLUSH: f64 = 1e-10;
 
@@ -102,14 +112,21 @@ pub struct Contacts {
     points: Vec<Point>,
     /// Of the last step, ordered by key.
     old: Vec<Point>,
-    start: Kinematics,
+    start: Posed,
     middle: Kinematics,
     end: Kinematics,
+    /// The state after the step.
+    after: Posed,
+    /// Bodies of contacts that are live, and all that carry them, ascending.
+    chain: Vec<usize>,
+    on_chain: Vec<bool>,
     v1: Vec<f64>,
     ids: Vec<u32>,
     columns: BodyColumns,
     /// Blocks that give way by less (trace, 1/kg) do not: what two bodies of a locked limb do to each other is rounding.
     least: f64,
+    /// Per body: force of the contacts in the last step, N.
+    received: Vec<V3<f64>>,
     /// Step of the impulses of `old`, s.
     h: f64,
     /// The deepest penetration at the start of a step so far, m.
@@ -131,13 +148,17 @@ impl Contacts {
             rests: vec![false; m.bodies.len()],
             points: vec![],
             old: vec![],
-            start: k.clone(),
+            start: Posed::new(m),
             middle: k.clone(),
             end: k,
+            after: Posed::new(m),
+            chain: Vec::with_capacity(m.bodies.len()),
+            on_chain: vec![false; m.bodies.len()],
             v1: vec![0.0; m.nv],
             ids: vec![],
             columns: BodyColumns::new(m),
             least: HELD / m.bodies.iter().map(|b| b.mass).sum::<f64>(),
+            received: vec![V3::default(); m.bodies.len()],
             h: 0.0,
             worst: 0.0,
             tempered: 0,
@@ -156,12 +177,31 @@ impl Contacts {
         self.points.clear();
         self.old.clear();
         self.rests.fill(false);
+        self.received.fill(V3::default());
         (self.h, self.worst) = (0.0, 0.0);
+        self.forget();
+    }
+
+    /// Forgets the poses: the model has moved.
+    pub fn forget(&mut self) {
+        self.start.forget();
+        self.after.forget();
+    }
+
+    /// Poses and velocities of the state that the step has led to.
+    pub fn arrive(&mut self, m: &Model, q: &[f64], v: &[f64]) -> &Kinematics {
+        self.after.update(m, q, v);
+        &self.after.k
+    }
+
+    /// As the last [`Contacts::arrive`] found them.
+    pub fn end(&self) -> &Kinematics {
+        &self.after.k
     }
 
     /// Poses and velocities at the start of the step.
     pub fn start(&self) -> &Kinematics {
-        &self.start
+        &self.start.k
     }
 
     /// The bodies of contacts that carried something in the last step and act on something.
@@ -211,13 +251,17 @@ impl Contacts {
     pub fn begin(&mut self, m: &Model, (q, v): (&[f64], &[f64]), h: f64) {
         std::mem::swap(&mut self.points, &mut self.old);
         self.points.clear();
-        kinematics(m, &mut self.start, q, v);
-        self.detector.find(&self.start, h, &mut self.touches);
+        if self.after.is_at(q, v) {
+            std::mem::swap(&mut self.start, &mut self.after);
+        }
+        self.start.update(m, q, v);
+        let start = &self.start.k;
+        self.detector.find(start, h, &mut self.touches);
         let scale = if self.h > 0.0 { h / self.h } else { 0.0 };
         let mut known = self.old.iter().peekable();
         for touch in &self.touches {
-            let placed = touch.placed(&self.start);
-            let u = approach(&self.start, touch, placed.point);
+            let placed = touch.placed(start);
+            let u = approach(start, touch, placed.point);
             while known.peek().is_some_and(|old| old.touch.key() < touch.key()) {
                 known.next();
             }
@@ -245,6 +289,21 @@ impl Contacts {
             });
         }
         self.h = h;
+        self.find_chain(m);
+    }
+
+    fn find_chain(&mut self, m: &Model) {
+        self.chain.clear();
+        if self.is_empty() {
+            return;
+        }
+        self.on_chain.fill(false);
+        for mut body in self.points.iter().filter(|p| p.is_live()).flat_map(|p| p.touch.bodies) {
+            while !std::mem::replace(&mut self.on_chain[body], true) {
+                body = m.bodies[body].parent;
+            }
+        }
+        self.chain.extend((1..m.bodies.len()).filter(|body| self.on_chain[*body]));
     }
 
     /// Solves the rows that are there together with those of all contacts, for velocities `v₀ + h qdd` without them, and pushes
@@ -259,10 +318,14 @@ impl Contacts {
     ) -> Solved {
         self.columns.forget();
         self.write(m, ws, (&*response, rows), pass, qdd);
-        let mut solved = rows.solve(pass.sweeps, AIM);
+        let sweeps = if rows.rows().len() > FEW { pass.sweeps.max(1) } else { 0 };
+        let mut solved = rows.solve_within((sweeps, TRIES), AIM);
+        if !solved.within(ROUGH) {
+            solved = rows.solve(EXTRA, ROUGH);
+        }
         self.take(rows);
         if self.bounce(rows, pass.h) {
-            solved = rows.solve(pass.sweeps, AIM);
+            solved = rows.solve_within((sweeps, TRIES), AIM);
             self.temper(rows);
             self.take(rows);
         }
@@ -280,9 +343,13 @@ impl Contacts {
         pass: &Pass,
         qdd: &[f64],
     ) {
-        kinematics(m, &mut self.middle, pass.q, pass.v0);
+        if self.start.is_at(pass.q, pass.v0) {
+            self.middle.copy_of(&self.start.k, &self.chain);
+        } else {
+            kinematics_of(m, &mut self.middle, (pass.q, pass.v0), &self.chain);
+        }
         end_velocities(m, pass, qdd, &mut self.v1);
-        kinematics(m, &mut self.end, pass.q, &self.v1);
+        kinematics_of(m, &mut self.end, (pass.q, &self.v1), &self.chain);
         for point in self.points.iter_mut().filter(|p| p.is_live()) {
             point.place(&self.middle, pass);
             let mut target = Target {
@@ -358,23 +425,11 @@ impl Contacts {
         }
     }
 
-    /// Asks the rows for the speeds that are missing in a motion with `qdd` and these `weight`s, so that nothing ends inside of
-    /// something else. False if none are.
-    pub(super) fn aim_lift(
-        &mut self,
-        m: &Model,
-        rows: &mut Rows,
-        pass: &Pass,
-        (qdd, weight): (&[f64], &[f64]),
-    ) -> bool {
-        if pass.mean {
-            for (u, (v0, (a, w))) in self.v1.iter_mut().zip(pass.v0.iter().zip(qdd.iter().zip(weight))) {
-                *u = v0 + w * pass.h * a;
-            }
-        } else {
-            end_velocities(m, pass, qdd, &mut self.v1);
-        }
-        kinematics(m, &mut self.end, pass.q, &self.v1);
+    /// Asks the rows for what is missing in a motion with these speeds (nv), so that nothing ends inside of something else. False
+    /// if nothing is.
+    pub(super) fn aim_lift(&mut self, m: &Model, rows: &mut Rows, pass: &Pass, speeds: impl Fn(&mut [f64])) -> bool {
+        speeds(&mut self.v1);
+        kinematics_of(m, &mut self.end, (pass.q, &self.v1), &self.chain);
         let mut wanted = false;
         for point in self.points.iter().filter(|p| p.is_live()) {
             let way = pass.h * point.along(0, approach(&self.end, &point.touch, point.placed.point));
@@ -474,8 +529,8 @@ impl Point {
         let block = t.rows.add(kind, axes.len(), t.ids);
         for (n, axis) in axes.iter().enumerate() {
             let (ids, out) = t.rows.response(block, n);
-            for push in self.pushes(middle, wrench(self, *axis)).iter().filter(|push| push.body != 0) {
-                t.columns.of(t.response, (t.m, t.ws, t.q), push.body).combine(push, ids, out);
+            for push in self.pushes(middle, wrench(self, *axis)) {
+                t.columns.of(t.response, (t.m, t.ws, t.q), push.body).combine(&push, ids, out);
             }
         }
         t.rows.seal(block);
@@ -501,9 +556,11 @@ impl Point {
         self.acts != [0, 0]
     }
 
-    /// A force and a torque (world) at the point on side 1, and their opposites on side 0.
-    fn pushes(&self, k: &Kinematics, (force, torque): (V3<f64>, V3<f64>)) -> [Push; 2] {
-        [(0, -1.0), (1, 1.0)].map(|(side, sign)| {
+    /// A force and a torque (world) at the point on side 1, and their opposites on side 0; none on the world.
+    #[inline(always)]
+    fn pushes(&self, k: &Kinematics, (force, torque): (V3<f64>, V3<f64>)) -> impl Iterator<Item = Push> {
+        let sides = [(0, -1.0), (1, 1.0)].into_iter().filter(|(side, _)| self.acts[*side] != 0);
+        sides.map(move |(side, sign)| {
             let body = self.acts[side];
             let (r, arm) = (&k.r[body], self.placed.point - k.p[body]);
             let (f, t) = (force * sign, torque * sign);
@@ -559,7 +616,7 @@ impl Point {
 
 /// Velocities at the end of the step (nv). A floating body's are advanced along the axes of the body in the middle of the step;
 /// where coordinates move with the velocities at the end, along those of the world.
-fn end_velocities(m: &Model, pass: &Pass, qdd: &[f64], out: &mut [f64]) {
+pub(super) fn end_velocities(m: &Model, pass: &Pass, qdd: &[f64], out: &mut [f64]) {
     for (v1, (v0, a)) in out.iter_mut().zip(pass.v0.iter().zip(qdd)) {
         *v1 = v0 + pass.h * a;
     }

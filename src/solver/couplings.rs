@@ -4,7 +4,7 @@
 
 use super::axis_set::{AxisSet, StateRef, StepStart};
 use super::contacts::{Contacts, Pass};
-use super::lifts::{Lift, LiftKind};
+use super::lifting::Reached;
 use super::rows::{Kind, Rows};
 use crate::dynamics::{Push, Response, Workspace};
 use crate::model::{AxisSlot, Coupling, Model};
@@ -18,7 +18,7 @@ const RETURN: f64 = 10.0;
 const SWEEPS: u32 = 10;
 /// Share of the velocities at the start to which the rows are solved if that is possible: rounding, so that an explicit step
 /// keeps its order and its energy.
-const AIM: f64 = 1e-14;
+pub(super) const AIM: f64 = 1e-14;
 /// Share of the velocities at the start that may be left.
 const TOLERANCE: f64 = 1e-11;
 /// A row that moves this much less than it would without the locks of a spherical joint is held by them.
@@ -33,9 +33,11 @@ const STILL: f64 = 4.0 * f64::EPSILON;
 /// The rows of all couplings. Makes its memory once.
 #[derive(Clone, Debug)]
 pub struct Couplings {
-    response: Response,
-    rows: Rows,
-    pairs: Vec<Pair>,
+    pub(super) response: Response,
+    pub(super) rows: Rows,
+    pub(super) pairs: Vec<Pair>,
+    /// Stops that a lift reaches.
+    pub(super) reached: Vec<Reached>,
     /// Step of the impulses that are kept, s.
     h: f64,
     /// `None` if nothing can touch.
@@ -48,7 +50,7 @@ pub(super) struct Pair {
     pub coupling: Coupling,
     follower: Seat,
     leader: Seat,
-    pushes: [Push; 2],
+    pub pushes: [Push; 2],
     /// What the follower's end of the step (velocity; in explicit stages acceleration) is to fall short of the leader's
     /// by, so that a deviation goes.
     back: f64,
@@ -102,7 +104,7 @@ impl Couplings {
             response.layout.join(pair.follower.body, pair.leader.body, &mut ids);
             rows.add(Kind::EQUALITY, 1, &ids);
         }
-        Some(Box::new(Self { response, rows, pairs, h: 0.0, contacts }))
+        Some(Box::new(Self { response, rows, pairs, reached: vec![], h: 0.0, contacts }))
     }
 
     /// Forgets the last step.
@@ -120,7 +122,7 @@ impl Couplings {
     }
 
     /// Is there nothing to solve?
-    fn idle(&self) -> bool {
+    pub(super) fn idle(&self) -> bool {
         self.pairs.is_empty() && self.contacts.as_ref().is_none_or(Contacts::is_empty)
     }
 
@@ -165,35 +167,6 @@ impl Couplings {
         }
         self.response.apply(m, ws, pass.q, qdd);
         solved.within(TOLERANCE)
-    }
-
-    /// The speeds to move with besides those that lead to `qdd`, so that nothing ends inside of something else: to `lift`
-    /// (nv). False if there are none.
-    fn lift(
-        &mut self,
-        m: &Model,
-        ws: &Workspace<f64>,
-        pass: &Pass,
-        (qdd, weight): (&[f64], &[f64]),
-        lift: &mut [f64],
-    ) -> bool {
-        let Self { contacts, rows, response, pairs, .. } = self;
-        let Some(contacts) = contacts.as_mut().filter(|c| !c.is_empty()) else { return false };
-        if !contacts.aim_lift(m, rows, pass, (qdd, weight)) {
-            return false;
-        }
-        for k in 0..pairs.len() {
-            *rows.lift(k) = Lift { kind: LiftKind::Exactly, bias: 0.0, impulse: 0.0 };
-        }
-        rows.solve_lifts(pass.sweeps, AIM);
-        contacts.push_lift(response, rows);
-        for (k, pair) in pairs.iter().enumerate() {
-            let force = rows.lift(k).impulse;
-            pair.pushes.iter().for_each(|push| response.push(push, force));
-        }
-        lift.fill(0.0);
-        response.velocity(m, ws, pass.q, lift);
-        true
     }
 
     fn push(&mut self, k: usize, force: f64) {
@@ -307,23 +280,6 @@ impl AxisSet {
         );
         self.couplings = Some(couplings);
         loose
-    }
-
-    /// The speeds to move with in an implicit step of `h` besides those of its last pass at `q`, so that nothing ends inside of
-    /// something else: to `lift` (nv). False if there are none.
-    pub fn lift(
-        &mut self,
-        m: &Model,
-        ws: &Workspace<f64>,
-        (q, v0, qdd): (&[f64], &[f64], &[f64]),
-        h: f64,
-        lift: &mut [f64],
-    ) -> bool {
-        let Some(mut couplings) = self.couplings.take_if(|c| !c.idle()) else { return false };
-        let pass = Pass { q, v0, h, mean: self.mean, sweeps: self.sweeps };
-        let lifted = couplings.lift(m, ws, &pass, (qdd, &self.weight), lift);
-        self.couplings = Some(couplings);
-        lifted
     }
 
     /// As `AxisSet::couple` in a stage of an explicit step: brings the accelerations together. False if the step is better

@@ -5,7 +5,7 @@
 //! unit vector e, so its equations are `u_n = 0` and `e⊥·u_t = 0`, whose derivative with respect to the turn is that of
 //! the velocities plus `−u_t·e / |x_t|`. Discs at their rim follow the normal impulse likewise.
 
-use super::dense::{Lu, dot};
+use super::dense::{Cholesky, Lu, dot};
 use super::rows::{Block, CHUNK, FINISH_ROWS, Inner, Kind, Rows};
 
 /// Linearisations in one finish of many rows.
@@ -14,7 +14,7 @@ const TRIES: usize = 3;
 const LARGE: usize = 40;
 /// Most linearisations: with 3 of them, 10 of 100 hard random problems stay unsolved (8 contacts on 12 directions, from
 /// nothing), with 10 less than 1; the mean is then 2.0 instead of 1.8.
-const MANY: usize = 10;
+pub(super) const MANY: usize = 10;
 /// Softness of the linearised problem, relative to a row's own mobility: internal forces that nothing determines (a box on
 /// four corners) stay near those of the iteration. It is not in the residual: what Newton solves is exact.
 const SOFT: f64 = 1e-10;
@@ -40,6 +40,9 @@ pub(super) struct Scratch {
     matrix: Vec<f64>,
     velocity: Vec<f64>,
     lu: Lu,
+    cholesky: Cholesky,
+    /// Changes of the unknowns.
+    found: Vec<f64>,
     /// Impulses before a try, and the best.
     kept: Vec<f64>,
     best: Vec<f64>,
@@ -73,6 +76,8 @@ impl Scratch {
             return;
         }
         self.lu.resize(rows);
+        self.cholesky.resize(rows);
+        self.found.reserve(rows - self.found.len().min(rows));
         self.unknowns.reserve(rows - self.unknowns.len().min(rows));
         self.links.resize(rows, FIXED);
         for v in [&mut self.velocity, &mut self.kept, &mut self.best] {
@@ -114,6 +119,9 @@ impl Scratch {
     /// else does.
     fn solve(&mut self, n: usize) {
         let count = self.unknowns.len();
+        if self.links.iter().all(|l| l.follows == NONE) {
+            return self.solve_symmetric(n);
+        }
         self.moved[..count * n].fill(0.0);
         for row in 0..n {
             for (unknown, factor) in self.moves(row) {
@@ -137,18 +145,39 @@ impl Scratch {
         self.lu.factorise(count, matrix, |i| SOFT * a[unknowns[i].row * (n + 1)]);
         self.lu.solve(|i| -along(&unknowns[i], velocity));
         self.lu.refine(|i, x| -along(&unknowns[i], velocity) - dot(&matrix[i * count..i * count + count], x));
+        self.found.clear();
+        self.found.extend_from_slice(self.lu.solution());
+    }
+
+    /// The same where nothing slides: the matrix is a part of `Y Yᵀ + R`.
+    fn solve_symmetric(&mut self, n: usize) {
+        let (count, unknowns) = (self.unknowns.len(), &self.unknowns);
+        for (row, i) in self.matrix.chunks_exact_mut(count.max(1)).zip(unknowns) {
+            let from = &self.a[i.row * n..i.row * n + n];
+            row.iter_mut().zip(unknowns).for_each(|(to, k)| *to = from[k.row]);
+        }
+        let matrix = &self.matrix;
+        let soft = |i: usize| SOFT * matrix[i * count + i];
+        self.cholesky.factorise(count, |i, k| matrix[i * count + k] + if i == k { soft(i) } else { 0.0 });
+        self.cholesky.solve(|i| -self.velocity[unknowns[i].row]);
+        self.found.clear();
+        self.found.extend_from_slice(self.cholesky.solution());
+        let (found, velocity) = (&self.found, &self.velocity);
+        let left = |i: usize| -velocity[unknowns[i].row] - dot(&matrix[i * count..i * count + count], found);
+        self.cholesky.solve(left);
+        self.found.iter_mut().zip(self.cholesky.solution()).for_each(|(x, more)| *x += more);
     }
 }
 
 impl Rows {
     /// Improves the impulses to a residual of `wanted`, where velocities have the size `scale`; returns the residual, which
-    /// never grows, and the number of tries.
-    pub(super) fn finish(&mut self, mut residual: f64, wanted: f64, scale: f64) -> (f64, u32) {
+    /// never grows, and the number of tries: at most `tries`.
+    pub(super) fn finish(&mut self, mut residual: f64, wanted: f64, (scale, tries): (f64, usize)) -> (f64, u32) {
         let mut s = std::mem::take(&mut self.finish);
         self.fill(&mut s.a);
         let size = self.rows.len().max(1);
-        let most = (TRIES * LARGE.pow(3) / size.pow(3)).clamp(TRIES, MANY);
-        let mut tries = 0;
+        let most = (TRIES * LARGE.pow(3) / size.pow(3)).clamp(TRIES, MANY).min(tries);
+        let (mut tries, mut there) = (0, true);
         self.keep(&mut s.best);
         while residual > wanted && tries < most {
             tries += 1;
@@ -165,13 +194,16 @@ impl Rows {
                 (0..SWEEPS * tries as u32).for_each(|_| _ = self.sweep());
                 better = self.lower(&mut residual);
             }
+            there = better;
             if better {
                 self.keep(&mut s.best);
             } else if residual <= ROUNDING * scale {
                 break;
             }
         }
-        self.restore(&s.best);
+        if !there {
+            self.restore(&s.best);
+        }
         self.finish = s;
         (residual, tries as u32)
     }
@@ -222,26 +254,48 @@ impl Rows {
     }
 
     fn couple_blocks(&self, b: &Block, c: &Block, a: &mut [f64]) {
+        match (b.rows, c.rows) {
+            (3, 3) => self.couple::<3, 3>(b, c, a),
+            (3, 1) => self.couple::<3, 1>(b, c, a),
+            (1, 3) => self.couple::<1, 3>(b, c, a),
+            (1, 1) => self.couple::<1, 1>(b, c, a),
+            _ => {
+                for p in 0..b.rows {
+                    for q in 0..c.rows {
+                        a[(b.first + p) * self.rows.len() + c.first + q] = self.between((b, p), (c, q));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Two blocks of P and Q rows.
+    #[inline(always)]
+    fn couple<const P: usize, const Q: usize>(&self, b: &Block, c: &Block, a: &mut [f64]) {
         let n = self.rows.len();
         let (ids, others) = (&self.ids[b.ids.clone()], &self.ids[c.ids.clone()]);
+        let y: [&[[f64; CHUNK]]; P] = std::array::from_fn(|p| self.numbers(b, p).as_chunks().0);
+        let z: [&[[f64; CHUNK]]; Q] = std::array::from_fn(|q| self.numbers(c, q).as_chunks().0);
+        let mut sums = [[[0.0; CHUNK]; Q]; P];
         let (mut i, mut k) = (0, 0);
         while i < ids.len() && k < others.len() {
-            if ids[i] != others[k] {
-                if ids[i] < others[k] {
-                    i += 1
-                } else {
-                    k += 1
-                }
-                continue;
-            }
-            for p in 0..b.rows {
-                let y = &self.numbers(b, p)[i * CHUNK..i * CHUNK + CHUNK];
-                for q in 0..c.rows {
-                    let z = &self.numbers(c, q)[k * CHUNK..k * CHUNK + CHUNK];
-                    a[(b.first + p) * n + c.first + q] += (y[0] * z[0] + y[1] * z[1]) + (y[2] * z[2] + y[3] * z[3]);
+            match ids[i].cmp(&others[k]) {
+                std::cmp::Ordering::Less => i += 1,
+                std::cmp::Ordering::Greater => k += 1,
+                std::cmp::Ordering::Equal => {
+                    for p in 0..P {
+                        for q in 0..Q {
+                            (0..CHUNK).for_each(|j| sums[p][q][j] += y[p][i][j] * z[q][k][j]);
+                        }
+                    }
+                    (i, k) = (i + 1, k + 1);
                 }
             }
-            (i, k) = (i + 1, k + 1);
+        }
+        for (p, sums) in sums.iter().enumerate() {
+            for (q, s) in sums.iter().enumerate() {
+                a[(b.first + p) * n + c.first + q] = (s[0] + s[1]) + (s[2] + s[3]);
+            }
         }
     }
 
@@ -259,7 +313,7 @@ impl Rows {
             }
         }
         s.solve(self.rows.len());
-        let found = s.lu.solution();
+        let found = &s.found;
         for row in 0..self.rows.len() {
             let by = |(unknown, factor): (usize, f64)| if unknown == NONE { 0.0 } else { factor * found[unknown] };
             self.rows[row].impulse += s.moves(row).into_iter().map(by).sum::<f64>();

@@ -16,6 +16,7 @@ mod finish;
 mod gauss_seidel;
 mod inputs;
 mod law;
+mod lifting;
 mod lifts;
 mod mobility;
 mod refit;

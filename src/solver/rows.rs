@@ -236,10 +236,15 @@ impl Rows {
     /// it is needed and there are not too many rows. Ends early where the residual is `aim` times the velocities at the
     /// start; about 1e-15 of them is rounding.
     pub fn solve(&mut self, sweeps: u32, aim: f64) -> Solved {
+        self.solve_within((sweeps.max(1), super::finish::MANY), aim)
+    }
+
+    /// The same with a bound on the tries of the finish.
+    pub fn solve_within(&mut self, (sweeps, tries): (u32, usize), aim: f64) -> Solved {
         self.gather();
         let mut solved = Solved { scale: self.scale(), ..Solved::default() };
         let wanted = aim * solved.scale;
-        while solved.sweeps < sweeps.max(1) {
+        while solved.sweeps < sweeps {
             solved.sweeps += 1;
             if self.sweep() <= wanted {
                 break;
@@ -247,7 +252,7 @@ impl Rows {
         }
         solved.residual = self.residual();
         if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
-            (solved.residual, solved.tries) = self.finish(solved.residual, wanted, solved.scale);
+            (solved.residual, solved.tries) = self.finish(solved.residual, wanted, (solved.scale, tries));
         }
         solved
     }

@@ -57,7 +57,8 @@ impl World {
     /// only if, one does.
     pub(super) fn break_joints(&mut self, step: &StepSettings, time: f64) {
         let Some(watch) = self.breaking.watch.as_mut().filter(|_| self.effects.breaking) else { return };
-        let overloads = watch.end(&self.model, &self.engine.state, step.gravity, step.h);
+        let contacts = self.engine.axes.contacts().map_or(&[][..], |c| c.received());
+        let overloads = watch.end(&self.model, &self.engine.state, step, contacts);
         if overloads.is_empty() {
             return;
         }

@@ -7,7 +7,7 @@ mod pose;
 mod settings;
 mod snapshot;
 
-use crate::dynamics::{Energy, Kinematics, Momentum, energy, kinematics, link_pose, link_twist, momentum};
+use crate::dynamics::{Energy, Kinematics, Momentum, energy, link_pose, link_twist, momentum};
 use crate::engine::{Rbx, State, StepSettings};
 use crate::math::{Pose, Twist};
 use crate::model::{Effects, Model};
@@ -42,8 +42,11 @@ pub struct Stats {
     pub guarded_energy: f64,
     /// By how much an axis was outside its range at most (a soft stop, a start there, an angle of a 3DOF group); rad or m.
     pub worst_stop_violation: f64,
-    /// Energy that steps in contact would have made out of nothing, and that was taken out of the velocities, J.
+    /// Energy that steps in contact would have made out of nothing, and that was taken out of speeds and heights, J.
     pub trimmed_energy: f64,
+    /// What the rows of contacts were left with at the end of a step at most: how far a velocity is from where Coulomb's law
+    /// wants it, m/s.
+    pub worst_residual: f64,
     /// The deepest penetration of two bodies at the start or the end of a step, m.
     pub worst_penetration: f64,
     /// Steps in which a 3DOF group was so near its pole that angle torques were regularised.
@@ -222,6 +225,7 @@ impl World {
         s.fast_pieces += u64::from(report.fast);
         s.guarded_pieces += u64::from(report.guarded);
         s.guarded_energy += report.guarded_energy;
+        s.worst_residual = s.worst_residual.max(report.residual);
         s.trimmed_energy += report.trimmed_energy;
         s.worst_stop_violation = self.engine.axes.worst_stop;
         s.pole_steps += u64::from(report.at_pole);
@@ -253,7 +257,7 @@ impl World {
     }
 
     fn update(&mut self) {
-        kinematics(&self.model, &mut self.kinematics, &self.engine.state.q, &self.engine.state.v);
+        self.engine.poses(&self.model, &mut self.kinematics);
         if self.engine.axes.contacts().is_some() {
             self.show_contacts();
         }
@@ -320,8 +324,9 @@ impl World {
         self.state().rotor_energy(&self.model, self.engine.axes.drives.iter().map(|d| d.rotor_inertia))
     }
 
-    /// Work of the drives and losses at the axes since the start or the last reset, J. With [`World::energy`] it shows the
-    /// error of the integrator: what the energy has gained beyond `drives − losses`.
+    /// Work of the drives, losses at the axes and at contacts since the start or the last reset, J. With [`World::energy`] and
+    /// what the counters say was taken out it shows the error of the integrator: what the energy has gained beyond
+    /// `drives − losses − contacts`.
     pub fn work(&self) -> Work {
         self.engine.axes.work
     }

@@ -74,6 +74,7 @@ impl World {
             None => {
                 self.unmoved.get_or_insert_with(|| self.model.clone());
                 Arc::make_mut(&mut self.model).move_fixed_base(axis, motion);
+                self.engine.moved();
             }
         }
     }

@@ -293,13 +293,11 @@ fn a_3dof_group_follows_its_rules() {
 }
 
 #[test]
-fn effects_to_come_are_noted_once_per_kind() {
-    let tags = "<realnoid><surface/><proxy><sphere radius='1'/></proxy><proxy><sphere radius='1'/></proxy></realnoid>";
+fn what_collides_is_read_without_a_word() {
+    let tags = "<realnoid><surface friction='0.5'/><deactivate linear='0.1' angular='0.1' after='1'/>
+        <proxy><sphere radius='1'/></proxy><proxy><sphere radius='2'/></proxy></realnoid>";
     let text = robot(tags, "", "");
-    let findings = read(&text, "x").findings;
-    assert!(findings.iter().all(|f| (f.code, f.severity) == ("not-simulated-yet", Severity::Note)));
-    let messages: Vec<_> = findings.iter().map(|f| f.message.as_str()).collect();
-    assert_eq!(messages.len(), 2);
-    assert!(messages.iter().any(|m| m.starts_with("<proxy>") && m.contains("2 of them")));
-    assert!(messages.iter().any(|m| m.starts_with("<surface>")));
+    assert_eq!(codes(&text), [""; 0]);
+    let thigh = sound(&text).links.remove(1);
+    assert_eq!((thigh.proxies.len(), thigh.surface.unwrap().friction), (2, Some(0.5)));
 }

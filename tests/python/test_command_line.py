@@ -102,15 +102,6 @@ def test_wrong_arguments_are_told_and_end_with_2(variables, arguments, message):
     assert message in result.stderr
 
 
-def test_the_start_report_names_what_is_not_simulated_yet():
-    """The built-in humanoid has tags whose effect comes later; each kind is named when the node starts."""
-    simulator = Simulator(domain=random.randint(0, 101), urdf=None)
-    lines = [simulator.process.stdout.readline() for _ in range(8)]
-    simulator.stop()
-    for tag in ["<chain self_collision>", "<proxy>", "<surface>"]:
-        assert any(f"{tag} is read but not simulated yet" in line for line in lines), lines
-
-
 def test_a_reader_that_goes_away_does_not_stop_the_node(start):
     bench = start()
     bench.simulator.process.stdout.close()

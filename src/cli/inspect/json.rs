@@ -5,14 +5,14 @@ use super::groups;
 use crate::description::{Description, Link, PlacedShape};
 use crate::mass::{LinkBody, Method};
 use crate::math::{Mat3, Pose};
-use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, LinkInfo};
+use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, Effects, LinkInfo};
 use crate::monitor::{LinkValues, axis_faults, joint_link_values, link_values};
 use crate::shape::collision_shapes;
 use serde_json::{Value, json};
 
 /// SI units, links in their own frames; `principal_axes[i]` is the axis of `principal_moments[i]`, `shapes` tells how the mass
 /// of each shape was found. `links` are those of the URDF, `joint_links` what each axis moves as one body.
-pub(super) fn json(l: &Loaded) -> Value {
+pub(super) fn json(l: &Loaded, effects: &Effects) -> Value {
     let m = &l.model;
     let values = link_values(m, &l.bodies);
     let links = l.description.links.iter().zip(&m.links).zip(l.bodies.iter().zip(&values));
@@ -25,7 +25,7 @@ pub(super) fn json(l: &Loaded) -> Value {
     let joint_links: Vec<Value> =
         joint_link_values(m, &l.bodies).iter().map(|v| joint_link(&l.description, v)).collect();
     let effects: serde_json::Map<String, Value> =
-        EFFECT_NAMES.iter().zip(m.effects.as_array()).map(|(n, on)| ((*n).to_owned(), json!(on))).collect();
+        EFFECT_NAMES.iter().zip(effects.as_array()).map(|(n, on)| ((*n).to_owned(), json!(on))).collect();
     json!({"name": m.name, "mass": m.mass(), "bodies": m.bodies.len() - 1, "velocities": m.nv, "links": links,
            "joint_links": joint_links, "axes": m.axes.iter().zip(&faults).map(axis).collect::<Vec<_>>(),
            "groups": groups::groups(&l.description, m, &faults), "chains": groups::chains(m), "rigs": groups::rigs(m),

@@ -28,10 +28,11 @@ pub fn run(args: &InspectArgs) -> ExitCode {
         return ExitCode::FAILURE;
     }
     let unit = Unit::named(&args.unit);
+    let effects = world.as_ref().map_or(loaded.model.effects, |m| m.effects);
     let text = if args.urdf_with_inertials {
         loaded.published
     } else if args.json {
-        let mut all = json::json(&loaded);
+        let mut all = json::json(&loaded, &effects);
         if let Some(m) = &world {
             all["world"] = world::json(m);
         }
@@ -39,7 +40,7 @@ pub fn run(args: &InspectArgs) -> ExitCode {
     } else if args.full {
         values::full(&loaded, unit)
     } else {
-        tables::tables(&loaded, unit) + &world.as_ref().map(world::table).unwrap_or_default()
+        tables::tables(&loaded, unit, &effects) + &world.as_ref().map(world::table).unwrap_or_default()
     };
     super::say(&text)
 }

@@ -2,10 +2,10 @@
 
 use super::super::load::Loaded;
 use super::Unit;
-use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, Effects, JointType, LinkFrame, Model};
+use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_CAUSES, EFFECT_NAMES, Effects, JointType, LinkFrame, Model};
 use crate::monitor::{LinkValues, link_values};
 
-pub(super) fn tables(l: &Loaded, unit: Unit) -> String {
+pub(super) fn tables(l: &Loaded, unit: Unit, effects: &Effects) -> String {
     let m = &l.model;
     let mut text = format!(
         "{}: {} links, {} axes, {} moving bodies, {} velocities, {:.3} kg\n\n",
@@ -35,7 +35,7 @@ pub(super) fn tables(l: &Loaded, unit: Unit) -> String {
     for axis in &m.axes {
         text += &axis_row(m, axis);
     }
-    text + &effects_row(&m.effects)
+    text + &effects_row(effects)
 }
 
 fn link_row(frame: &LinkFrame, v: &LinkValues, unit: Unit) -> String {
@@ -83,10 +83,10 @@ fn axis_row(m: &Model, a: &Axis) -> String {
 }
 
 fn effects_row(e: &Effects) -> String {
-    let of = |wanted: bool| {
-        let names: Vec<&str> =
-            EFFECT_NAMES.iter().zip(e.as_array()).filter(|(_, on)| *on == wanted).map(|(n, _)| *n).collect();
-        if names.is_empty() { "none".into() } else { names.join(", ") }
-    };
-    format!("\neffects that this scene calls for: {}; not called for, not built: {}\n", of(true), of(false))
+    let list = |names: Vec<String>| if names.is_empty() { "none".into() } else { names.join(", ") };
+    let of =
+        |wanted: bool| EFFECT_NAMES.iter().zip(EFFECT_CAUSES).zip(e.as_array()).filter(move |(_, on)| *on == wanted);
+    let called = of(true).map(|((name, _), _)| (*name).to_owned()).collect();
+    let others = of(false).map(|((name, cause), _)| format!("{name} ({cause})")).collect();
+    format!("\neffects that this scene calls for: {}\nnot called for, not built: {}\n", list(called), list(others))
 }
