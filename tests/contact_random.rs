@@ -41,7 +41,7 @@ fn draw(seed: u64) -> Draw {
     let mut form = || list[(rng.next() % list.len() as u64) as usize].clone();
     let forms = [form(), form()];
     let masses = [1.0, 10f64.powf(3.0 * rng.unit())];
-    let some = |rng: &mut Random, most: f64| if rng.next() % 2 == 0 { most * share(rng) } else { 0.0 };
+    let some = |rng: &mut Random, most: f64| if rng.next().is_multiple_of(2) { most * share(rng) } else { 0.0 };
     let surface = Surface {
         friction: some(&mut rng, 2.0),
         rolling: some(&mut rng, 0.05),
@@ -53,12 +53,12 @@ fn draw(seed: u64) -> Draw {
     let way = rng.vec3(1.0).normalize();
     let turned = [rng.rotation(), rng.rotation()];
     let (turn, speed) = (50.0 * share(&mut rng).powi(2), 10.0 * share(&mut rng).powi(2));
-    let aim = if rng.next() % 4 > 0 { way * speed } else { Vec3::zeros() };
+    let aim = if !rng.next().is_multiple_of(4) { way * speed } else { Vec3::zeros() };
     let twists = [0, 1].map(|k| {
         let v = aim * (0.5 - f64::from(k)) + rng.vec3(0.25 * speed);
         (rng.vec3(turn / 3f64.sqrt()), turned[k as usize].inverse() * v)
     });
-    let (grounded, gravity) = (rng.next() % 2 == 0, rng.next() % 2 == 0);
+    let (grounded, gravity) = (rng.next().is_multiple_of(2), rng.next().is_multiple_of(2));
     let (height, slide) = (0.3 * share(&mut rng), rng.vec3(0.1));
     let at = |distance: f64| {
         let low = 0.2 + height + (-way.z).max(0.0) * distance;
