@@ -71,7 +71,9 @@ fn a_spinning_rod_does_not_pass_an_edge() {
                     w.advance();
                     let q = &w.state().q;
                     // Where the bar stands in the rod's frame: on the left of it as long as it has not been passed.
-                    let yaw = 2.0 * q[6].atan2(q[3]);
+                    // It may turn about its own axis as well.
+                    let (qw, qx, qy, qz) = (q[3], q[4], q[5], q[6]);
+                    let yaw = (2.0 * (qx * qy + qw * qz)).atan2(1.0 - 2.0 * (qy * qy + qz * qz));
                     let (x, y) = (0.45 - q[0], -q[1]);
                     let (along, aside) = (x * yaw.cos() + y * yaw.sin(), -x * yaw.sin() + y * yaw.cos());
                     past |= along.abs() < 0.5 && aside < 0.0;

@@ -50,18 +50,24 @@ pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, (reach, size): (
     let least = out[from..].iter().fold(f64::INFINITY, |m, raw| m.min(raw.gap));
     let gap = near.distance - round[0] - round[1];
     if gap < reach && least > gap + tolerance + 1e-9 {
-        out.push(single(s, &near, round));
+        out.push(single(s, [a, b], &near));
     }
     reduce(out, from, 1e-4 * size);
 }
 
-/// The nearest points alone.
-fn single(s: &Scratch, near: &Nearest, round: [f64; 2]) -> Raw {
-    let core = near.points;
+/// The nearest points alone. Between two corners (or middles of balls) the direction follows them; a point of an edge or of a
+/// curved surface is another one as the bodies slide, and its tangent plane, which bounds the whole shape, is what stays.
+fn single(s: &Scratch, solids: [&Placed; 2], near: &Nearest) -> Raw {
+    let (core, n) = (near.points, near.normal);
+    let round = solids.map(|x| x.solid.round);
     let way = core[1] - core[0];
-    let straight = norm(way - near.normal * near.distance) <= 1e-6 * near.distance;
-    if near.distance > SAME && straight && round[0] + round[1] > 0.0 {
-        return Raw::between(NEAREST, core, round, near.normal);
+    let straight = norm(way - n * near.distance) <= 1e-6 * near.distance;
+    let corners = [0, 1].map(|side: usize| {
+        let there = |spot: &Spot| norm(spot.at - core[side]) <= SAME;
+        !solids[side].solid.is_smooth() && s.features[side].spots.iter().any(there)
+    });
+    if near.distance > SAME && straight && round[0] + round[1] > 0.0 && corners == [true; 2] {
+        return Raw::between(NEAREST, core, round, n);
     }
     // One spot: a smooth surface, or a corner.
     let curve = |side: usize| match s.features[side].spots.as_slice() {
@@ -69,8 +75,8 @@ fn single(s: &Scratch, near: &Nearest, round: [f64; 2]) -> Raw {
         _ => 0.0,
     };
     let [a, b] = [curve(0), curve(1)];
-    let n = near.normal;
-    Raw::on(NEAREST, (0, n), [core[0] - n * a, core[1] + n * b], [round[0] + a, round[1] + b])
+    let side = usize::from(corners == [true, false]);
+    Raw::on(NEAREST, (side, n), [core[0] - n * a, core[1] + n * b], [round[0] + a, round[1] + b])
 }
 
 /// What of the other shape lies over a face; `n` from the first shape to the second.
