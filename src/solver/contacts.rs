@@ -444,6 +444,15 @@ impl Contacts {
         wanted
     }
 
+    /// The greatest speed that a lift was asked for, m/s.
+    pub(super) fn most_missing(&self, rows: &Rows) -> f64 {
+        let missing = |p: &Point| match rows.lift_of(p.block) {
+            Lift { kind: LiftKind::Exactly, bias, .. } => bias.abs(),
+            Lift { bias, .. } => -bias,
+        };
+        self.points.iter().filter(|p| p.is_live()).map(missing).fold(0.0, f64::max)
+    }
+
     /// Pushes with the impulses of the lift.
     pub(super) fn push_lift(&self, response: &mut Response, rows: &mut Rows) {
         for point in self.points.iter().filter(|p| p.is_live()) {

@@ -102,6 +102,11 @@ impl Rows {
         &mut self.lifts.of[block]
     }
 
+    /// The same, to look at.
+    pub fn lift_of(&self, block: usize) -> &Lift {
+        &self.lifts.of[block]
+    }
+
     /// Finds the pseudo-impulses, from those that are there: at most `sweeps` Gauss–Seidel sweeps, then the direct finish if
     /// it is needed and at most [`FINISH_ROWS`] rows take part. `aim` as in [`Rows::solve`]. The impulses of the velocity
     /// pass have no part in it.
