@@ -16,6 +16,10 @@ use crate::solver::{AxisCommand, StepStart, write_softs};
 const TOLERANCE: f64 = 1e-8;
 /// An iteration that shrinks by less than this factor per pass does not contract.
 const CONTRACTION: f64 = 0.5;
+/// Where bodies touch, what the middle still moves by makes no energy (`paid`), and what begins or ceases to slide makes it jump:
+/// the tolerance, and a move that is no sign of a step that is too long.
+const TOUCHING: f64 = 1e-6;
+const JUMPS: f64 = 1e-3;
 /// Velocities that the rows of contacts leave open, m/s, move the middle by about this many times as much.
 const NOISE: f64 = 30.0;
 /// When its passes are used up, a step whose middle moves by less than this is taken; one that had enough of them is halved.
@@ -160,14 +164,17 @@ impl Rbx {
             let misfits = self.axes.pass(m, &mut self.ws, at, (s.gravity, s.h), (&mut self.qdd, wanted));
             // Accelerations of laws that do not fit may be wild: the middle does not follow them.
             let moved = if misfits == 0 || !wanted { self.mean_velocities(mid, s.h) } else { 1.0 };
-            if misfits == 0 && moved <= TOLERANCE.max(NOISE * self.axes.residual()) {
+            let touches = self.axes.touches();
+            let tolerance = if touches { TOUCHING } else { TOLERANCE };
+            if misfits == 0 && moved <= tolerance.max(NOISE * self.axes.residual()) {
                 return End::Converged;
             }
-            if !moved.is_finite() || (misfits == 0 && pass > 2 && moved > CONTRACTION * last) {
+            let jumps = if touches { JUMPS } else { 0.0 };
+            if !moved.is_finite() || (misfits == 0 && pass > 2 && moved > (CONTRACTION * last).max(jumps)) {
                 return End::NoContraction;
             }
             if !wanted {
-                let near = if misfits == 0 { COARSE } else { ROUGH };
+                let near = if misfits == 0 && !touches { COARSE } else { ROUGH };
                 return match misfits {
                     0 if moved <= COARSE => End::Converged,
                     _ if moved > near && pass >= ENOUGH => End::NoContraction,

@@ -420,6 +420,11 @@ impl AxisSet {
         }
     }
 
+    /// Did a contact carry something in the last pass?
+    pub fn touches(&self) -> bool {
+        self.contacts().is_some_and(|c| c.carrying_bodies().next().is_some())
+    }
+
     /// What the contacts' rows were left with in the last pass, m/s.
     pub fn residual(&self) -> f64 {
         self.contacts().map_or(0.0, |c| if c.is_empty() { 0.0 } else { c.residual })

@@ -26,6 +26,8 @@ const HELD: f64 = 1e-12;
 /// Rows that are left with more than this share of their velocities make energy: they are swept on, at most this often.
 const ROUGH: f64 = 1e-4;
 const EXTRA: u32 = 100;
+/// Rows that are left with more than this share have no solution.
+const BAD: f64 = 0.05;
 /// Gaps that differ by less are equal, m.
 const FLUSH: f64 = 1e-10;
 
@@ -320,8 +322,14 @@ impl Contacts {
         self.write(m, ws, (&*response, rows), pass, qdd);
         let sweeps = if rows.rows().len() > FEW { pass.sweeps.max(1) } else { 0 };
         let mut solved = rows.solve_within((sweeps, TRIES), AIM);
-        if !solved.within(ROUGH) {
+        // Against the velocities without impulses: those of the last pass may be what went wrong.
+        let scale = rows.most_bias();
+        let within = |solved: &Solved, share: f64| solved.residual <= share * scale;
+        if !within(&solved, ROUGH) {
             solved = rows.solve(EXTRA, ROUGH);
+        }
+        if !within(&solved, BAD) {
+            solved = self.settle_for(rows);
         }
         self.take(rows);
         if self.bounce(rows, pass.h) {
@@ -407,6 +415,25 @@ impl Contacts {
         self.blend(rows, share);
         let wanted = |p: &Point| rows.impulse(p.block, 0) * (p.free - rows.rows()[rows.first_row(p.block)].bias);
         rows.work() + self.points.iter().filter(|p| p.is_live()).map(wanted).sum::<f64>()
+    }
+
+    /// Rows that cannot all have what they want (limbs wedged in each other by what curves) diverge. Then nothing is asked for
+    /// but that nothing comes nearer, which standing still satisfies, and of the impulses no more is taken than what leaves least
+    /// kinetic energy: `T(s) = s x·u + s² |w|²/2`.
+    fn settle_for(&mut self, rows: &mut Rows) -> Solved {
+        for point in self.points.iter_mut().filter(|p| p.is_live()) {
+            point.floor = point.floor.min(0.0);
+            rows.row(point.block, 0).bias = point.free - point.floor;
+            point.write(rows, &Impulse::default());
+        }
+        let solved = rows.solve(EXTRA, ROUGH);
+        let wanted = |p: &Point| rows.impulse(p.block, 0) * p.floor;
+        let work = rows.work() + self.points.iter().filter(|p| p.is_live()).map(wanted).sum::<f64>();
+        let size = rows.size();
+        let share = if size > 0.0 { (0.5 - work / size).max(0.0).min(1.0) } else { 1.0 };
+        rows.scale_impulses(if share.is_finite() { share } else { 0.0 });
+        rows.gather();
+        solved
     }
 
     fn take(&mut self, rows: &Rows) {
@@ -598,6 +625,9 @@ impl Point {
     }
 
     fn write(&self, rows: &mut Rows, x: &Impulse) {
+        if rows.is_off(self.block) {
+            return;
+        }
         let cone = [x.normal, self.along(1, x.tangent), self.along(2, x.tangent)];
         for (n, x) in cone.into_iter().enumerate() {
             rows.row(self.block, n).impulse = x;

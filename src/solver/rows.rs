@@ -286,6 +286,16 @@ impl Rows {
         self.blocks.iter().filter(|b| !b.is_off()).map(|b| (0..b.rows).map(|n| of(b, n)).sum::<f64>()).sum()
     }
 
+    /// The greatest velocity without impulses, against the one wanted.
+    pub(super) fn most_bias(&self) -> f64 {
+        self.rows.iter().map(|row| row.bias.abs()).fold(0.0, f64::max)
+    }
+
+    /// `|w|²`.
+    pub(super) fn size(&self) -> f64 {
+        self.w.iter().map(|w| w * w).sum()
+    }
+
     /// `y·w`.
     #[inline(always)]
     pub(super) fn reach(&self, b: &Block, n: usize) -> f64 {
