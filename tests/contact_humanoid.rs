@@ -8,8 +8,8 @@ use realnoid::cli::load::{Source, load};
 use realnoid::dynamics::{Kinematics, kinematics};
 use realnoid::engine::State;
 use realnoid::math::Vec3;
-use realnoid::model::{Base, Model};
-use realnoid::world::{AxisCommand, Integrator, World};
+use realnoid::model::{Base, DriveLimits, Model};
+use realnoid::world::{AxisCommand, Integrator, Side, World};
 use support::Random;
 use touching::*;
 
@@ -83,6 +83,17 @@ fn it_stands_on_its_servos() {
             w.set_commands(&commands).unwrap();
             (0..300).for_each(|_| w.advance());
             assert!((w.state().axis(&m, arm).0 - s.axis(&m, arm).0).abs() > 0.2);
+            // At rest again, its elbow is turned by hand; then its drive is weaker than the forearm.
+            (0..3000).for_each(|_| w.advance());
+            let at = w.state().axis(&m, arm).0;
+            w.set_joint_angle(arm, at + 0.1, Side::Tip).unwrap();
+            (0..300).for_each(|_| w.advance());
+            assert!((w.state().axis(&m, arm).0 - at).abs() < 0.05, "the servo takes it back");
+            (0..3000).for_each(|_| w.advance());
+            let weak = DriveLimits { max_torque: 1e-3, ..m.axes[arm].drive };
+            w.set_drive(arm, weak).unwrap();
+            (0..1000).for_each(|_| w.advance());
+            assert!((w.state().axis(&m, arm).0 - at).abs() > 0.1, "it hangs");
         }
     }
 }

@@ -226,8 +226,8 @@ fn same(a: &AxisCommand, b: &AxisCommand) -> bool {
 }
 
 impl Rbx {
-    /// For a state that comes from outside: nothing rests.
-    pub(super) fn wake(&mut self, m: &Model) {
+    /// Something has changed from outside (a state, a drive): nothing rests.
+    pub fn wake(&mut self, m: &Model) {
         if let Some(mut sleep) = self.sleep.take() {
             sleep.reset();
             self.take_part(m, &sleep);

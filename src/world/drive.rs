@@ -20,6 +20,7 @@ impl World {
         };
         drive.check()?;
         *present = drive;
+        self.engine.wake(&self.model);
         let called_for = Effects::called_for(&self.model);
         self.effects.friction |= drive.static_resistance > 0.0 && !called_for.friction;
         self.effects.rotor_inertia |= drive.rotor_inertia > 0.0 && !called_for.rotor_inertia;

@@ -36,6 +36,7 @@ impl World {
         state.set_axis(&self.model, axis, position, speed);
         state.couple_given(&self.model, &[axis])?;
         self.engine.state = state;
+        self.engine.wake(&self.model);
         self.update();
         if let (Some(link), Some(before)) = (link, before) {
             let back = before * self.link_pose(link).inverse();
@@ -75,6 +76,7 @@ impl World {
                 self.unmoved.get_or_insert_with(|| self.model.clone());
                 Arc::make_mut(&mut self.model).move_fixed_base(axis, motion);
                 self.engine.moved();
+                self.engine.wake(&self.model);
             }
         }
     }
