@@ -3,7 +3,7 @@
 use crate::contact::{Defaults, colliders};
 use crate::description::{self, Description, Finding, Severity, WORLD_ANCHOR};
 use crate::dynamics::singular_axes;
-use crate::engine::{ENGINE_NAMES, State, come_apart, not_honoured};
+use crate::engine::{EngineKind, State, come_apart, not_honoured};
 use crate::mass::{LinkBody, MassProperties, link_bodies, with_inertials};
 use crate::math::Pose;
 use crate::model::{Base, LinkFrame, Model};
@@ -148,7 +148,7 @@ pub fn examine_text((file, text): (&str, &str), packages: &[(String, PathBuf)], 
         let base = if is_static(&d) { Base::Fixed } else { setup.base };
         let (bodies, more) = link_bodies(&d, &meshes);
         findings.extend(more);
-        findings.extend(not_honoured(ENGINE_NAMES[0], &d));
+        findings.extend(not_honoured(EngineKind::default().name(), &d));
         findings.extend(loose_anchors(&d, base));
         if findings.iter().any(|f| f.severity == Severity::Error) {
             return None;

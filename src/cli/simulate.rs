@@ -5,11 +5,11 @@ use super::commands::{self, axis};
 use super::load::Loaded;
 use super::outcome::{Outcome, Peak, Progress, counted};
 use super::scene::{
-    Assembly, Fault, Scene, Spare, assemble, couple, integrator, interval_ns, outside, pose, switch_effect,
+    Assembly, Fault, Scene, Spare, assemble, couple, engine, integrator, interval_ns, outside, pose, switch_effect,
 };
 use super::script::Script;
 use crate::description::Severity;
-use crate::engine::{ENGINE_NAMES, State};
+use crate::engine::State;
 use crate::math::{Pose, Vec3};
 use crate::model::{Base, Model};
 use crate::record::{ContactWriter, Format, Recorder, Sample};
@@ -254,8 +254,8 @@ fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {
     if let Some(name) = &args.integrator {
         s.integrator = integrator(name)?;
     }
-    if let Some(name) = args.engine.as_deref().filter(|n| !ENGINE_NAMES.contains(n)) {
-        return Err(format!("engine '{name}' does not exist; choose one of: {}", ENGINE_NAMES.join(", ")));
+    if let Some(name) = &args.engine {
+        s.engine = engine(name)?;
     }
     s.check()?;
     Ok(s)

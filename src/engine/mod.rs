@@ -7,16 +7,17 @@ mod euler;
 mod forest;
 mod guard;
 mod honour;
+mod kind;
 mod midpoint;
 mod paid;
 mod rbx;
 mod rk4;
+mod seam;
 mod sleep;
 
 pub use apart::come_apart;
 pub use breaking::{BreakWatch, Overload};
 pub use honour::not_honoured;
+pub use kind::{Capabilities, EngineKind};
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};
-
-/// Names for `--engine` and the parameter `engine`.
-pub const ENGINE_NAMES: [&str; 1] = ["rbx"];
+pub use seam::Engine;

@@ -7,7 +7,7 @@ use super::sleep::Sleep;
 use crate::dynamics::{Kinematics, Scheme, Workspace, kinematics, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, ContactPoint, StateRef, StepStart};
+use crate::solver::{AxisCommand, AxisSet, StateRef, StepStart};
 
 /// How the state is advanced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -349,16 +349,6 @@ impl Rbx {
         if let Some(contacts) = self.axes.contacts_mut() {
             contacts.forget();
         }
-    }
-
-    /// The contacts of the last step that carry something, at these poses.
-    pub fn contacts<'a>(&'a self, k: &'a Kinematics) -> impl Iterator<Item = ContactPoint> + 'a {
-        self.axes.contacts().into_iter().flat_map(|c| c.shown(k))
-    }
-
-    /// The deepest penetration so far, with these poses as the last ones, m.
-    pub fn worst_penetration(&self, k: &Kinematics) -> f64 {
-        self.axes.contacts().map_or(0.0, |c| c.worst.max(c.depth(k)))
     }
 
     /// False, with the state as before, if the step is not smooth.

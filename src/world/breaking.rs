@@ -49,7 +49,7 @@ impl World {
     /// Before a step.
     pub(super) fn watch_joints(&mut self) {
         if let Some(watch) = self.breaking.watch.as_mut().filter(|_| self.effects.breaking) {
-            watch.begin(&self.model, &self.engine.state);
+            watch.begin(&self.model, self.engine.state());
         }
     }
 
@@ -57,8 +57,7 @@ impl World {
     /// only if, one does.
     pub(super) fn break_joints(&mut self, step: &StepSettings, time: f64) {
         let Some(watch) = self.breaking.watch.as_mut().filter(|_| self.effects.breaking) else { return };
-        let contacts = self.engine.axes.contacts().map_or(&[][..], |c| c.received());
-        let overloads = watch.end(&self.model, &self.engine.state, step, contacts);
+        let overloads = watch.end(&self.model, self.engine.state(), step, self.engine.received());
         if overloads.is_empty() {
             return;
         }
@@ -66,7 +65,7 @@ impl World {
         let overloads: Vec<Broken> = (overloads.iter())
             .map(|o| Broken { joint: m.breakables[o.breakable].joint.as_str().into(), time, force: o.force })
             .collect();
-        let (mut model, mut state) = (Model::clone(&m), self.engine.state.clone());
+        let (mut model, mut state) = (Model::clone(&m), self.engine.state().clone());
         for broken in overloads {
             let joint = model.breakables.iter().find(|b| *b.joint == *broken.joint);
             if let Some(body) = joint.map(|b| b.body) {
@@ -78,7 +77,7 @@ impl World {
         self.engine.refit(&model, state, step.integrator);
         self.take(Arc::new(model));
         // The rotor of an axis that is apart turns on where nobody looks.
-        self.engine.axes.work.losses += rotors - self.rotor_energy();
+        self.engine.work_mut().losses += rotors - self.rotor_energy();
     }
 
     /// Goes back to the model with all its joints.

@@ -27,14 +27,16 @@ impl World {
     /// Writes the list; allocates only where there are more contacts than ever before.
     pub(super) fn show_contacts(&mut self) {
         self.contacts.clear();
-        let shown = self.engine.contacts(&self.kinematics).map(|c| ContactPoint {
-            colliders: c.colliders,
-            point: c.point.into(),
-            normal: c.normal.into(),
-            depth: c.depth,
-            force: c.force.into(),
+        let contacts = &mut self.contacts;
+        self.engine.contacts(&self.kinematics, &mut |c| {
+            contacts.push(ContactPoint {
+                colliders: c.colliders,
+                point: c.point.into(),
+                normal: c.normal.into(),
+                depth: c.depth,
+                force: c.force.into(),
+            });
         });
-        self.contacts.extend(shown);
         self.stats.worst_penetration = self.engine.worst_penetration(&self.kinematics);
     }
 }

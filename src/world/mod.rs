@@ -8,7 +8,7 @@ mod settings;
 mod snapshot;
 
 use crate::dynamics::{Energy, Kinematics, Momentum, energy, link_pose, link_twist, momentum};
-use crate::engine::{Rbx, State, StepSettings};
+use crate::engine::{Engine, State, StepSettings};
 use crate::math::{Pose, Twist};
 use crate::model::{Effects, Model};
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub use crate::solver::{AxisCommand, Mode, Work};
 pub use breaking::Broken;
 pub use contact::ContactPoint;
 pub use pose::Side;
-pub use settings::{Integrator, Settings};
+pub use settings::{EngineKind, Integrator, Settings};
 pub use snapshot::{SHOWN_CONTACTS, Snapshot, Wrench};
 
 /// Counters since the start; none of them is ever reset by a step.
@@ -64,7 +64,7 @@ pub struct World {
     /// The model as it was before its fixed base was moved, if it was.
     unmoved: Option<Arc<Model>>,
     settings: Settings,
-    engine: Rbx,
+    engine: Box<dyn Engine>,
     effects: Effects,
     initial: State,
     commands: Vec<AxisCommand>,
@@ -84,11 +84,12 @@ impl World {
     /// Says which setting is out of range.
     pub fn new(model: Arc<Model>, settings: Settings) -> Result<Self, String> {
         settings.check()?;
-        let mut engine = Rbx::new(&model);
+        let initial = State::initial(&model);
+        let mut engine = settings.engine.build(&model, &initial)?;
         engine.prepare(&model, settings.integrator);
         let mut world = Self {
             effects: model.effects,
-            initial: engine.state.clone(),
+            initial,
             engine,
             commands: vec![AxisCommand::IDLE; model.axes.len()],
             kinematics: Kinematics::new(&model),
@@ -116,17 +117,28 @@ impl World {
         &self.settings
     }
 
-    /// Takes effect with the next step. Allocates only if the integrator changes.
+    /// Takes effect with the next step. Allocates only if the engine or the integrator changes. Another engine goes on from the
+    /// present state with the present drives and ledgers.
     ///
     /// # Errors
-    /// Says which setting is out of range; nothing changes then.
+    /// Says which setting is out of range, or what the engine cannot take; nothing changes then.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), String> {
         settings.check()?;
-        if settings.integrator != self.settings.integrator {
+        if settings.engine != self.settings.engine {
+            self.engine = self.rebuilt(&settings)?;
+        } else if settings.integrator != self.settings.integrator {
             self.engine.prepare(&self.model, settings.integrator);
         }
         self.settings = settings;
         Ok(())
+    }
+
+    fn rebuilt(&self, settings: &Settings) -> Result<Box<dyn Engine>, String> {
+        let mut engine = settings.engine.build(&self.model, self.engine.state())?;
+        engine.prepare(&self.model, settings.integrator);
+        engine.drives_mut().copy_from_slice(self.engine.drives());
+        *engine.work_mut() = self.engine.work();
+        Ok(engine)
     }
 
     /// Sets the drive inputs of all axes, in the order of `Model::axes`; allocates nothing.
@@ -151,12 +163,12 @@ impl World {
 
     /// Per axis, N·m or N: the drive torque really applied in the last step.
     pub fn efforts(&self) -> &[f64] {
-        &self.engine.axes.effort
+        self.engine.efforts()
     }
 
     /// The state.
     pub fn state(&self) -> &State {
-        &self.engine.state
+        self.engine.state()
     }
 
     /// Puts the world into a state of the model with all its joints, which also becomes the one that [`World::reset`] goes back to.
@@ -172,8 +184,8 @@ impl World {
         if !self.broken().is_empty() {
             return false;
         }
-        self.initial.q.copy_from_slice(&self.engine.state.q);
-        self.initial.angles.copy_from_slice(&self.engine.state.angles);
+        self.initial.q.copy_from_slice(&self.engine.state().q);
+        self.initial.angles.copy_from_slice(&self.engine.state().angles);
         self.unmoved = None;
         self.breaking.intact = self.model.clone();
         true
@@ -227,7 +239,7 @@ impl World {
         s.guarded_energy += report.guarded_energy;
         s.worst_residual = s.worst_residual.max(report.residual);
         s.trimmed_energy += report.trimmed_energy;
-        s.worst_stop_violation = self.engine.axes.worst_stop;
+        s.worst_stop_violation = self.engine.worst_stop();
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
     }
@@ -258,7 +270,7 @@ impl World {
 
     fn update(&mut self) {
         self.engine.poses(&self.model, &mut self.kinematics);
-        if self.engine.axes.contacts().is_some() {
+        if self.engine.has_contacts() {
             self.show_contacts();
         }
     }
@@ -284,12 +296,12 @@ impl World {
 
     /// Writes the present state; allocates nothing.
     pub fn write_snapshot(&self, s: &mut Snapshot) {
-        let (m, state) = (&self.model, &self.engine.state);
+        let (m, state) = (&self.model, self.engine.state());
         (s.interval, s.stamp_ns) = (self.interval, self.stamp_ns);
         for i in 0..m.axes.len() {
             (s.position[i], s.velocity[i]) = state.axis(m, i);
         }
-        s.effort.copy_from_slice(&self.engine.axes.effort);
+        s.effort.copy_from_slice(self.engine.efforts());
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
             s.cut_off[link] = m.links[link].parent.is_none() && !m.is_root(link);
@@ -321,14 +333,14 @@ impl World {
         if !self.effects.rotor_inertia {
             return 0.0;
         }
-        self.state().rotor_energy(&self.model, self.engine.axes.drives.iter().map(|d| d.rotor_inertia))
+        self.state().rotor_energy(&self.model, self.engine.drives().iter().map(|d| d.rotor_inertia))
     }
 
     /// Work of the drives, losses at the axes and at contacts since the start or the last reset, J. With [`World::energy`] and
     /// what the counters say was taken out it shows the error of the integrator: what the energy has gained beyond
     /// `drives − losses − contacts`.
     pub fn work(&self) -> Work {
-        self.engine.axes.work
+        self.engine.work()
     }
 
     /// Momentum in the world frame, about the common centre of mass.

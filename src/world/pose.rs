@@ -31,12 +31,11 @@ impl World {
             return Err(format!("axis '{}' carries no link that could stay where it is", self.model.axes[axis].name));
         }
         let before = link.map(|link| self.link_pose(link));
-        let speed = self.engine.state.axis(&self.model, axis).1;
-        let mut state = self.engine.state.clone();
+        let speed = self.engine.state().axis(&self.model, axis).1;
+        let mut state = self.engine.state().clone();
         state.set_axis(&self.model, axis, position, speed);
         state.couple_given(&self.model, &[axis])?;
-        self.engine.state = state;
-        self.engine.wake(&self.model);
+        self.engine.place(&self.model, &state);
         self.update();
         if let (Some(link), Some(before)) = (link, before) {
             let back = before * self.link_pose(link).inverse();
@@ -63,7 +62,7 @@ impl World {
     }
 
     fn link_pose(&self, link: usize) -> Pose {
-        let state = &self.engine.state;
+        let state = self.engine.state();
         link_pose(&self.model, &self.kinematics, &state.q, &state.angles, link)
     }
 
@@ -75,8 +74,7 @@ impl World {
             None => {
                 self.unmoved.get_or_insert_with(|| self.model.clone());
                 Arc::make_mut(&mut self.model).move_fixed_base(axis, motion);
-                self.engine.moved();
-                self.engine.wake(&self.model);
+                self.engine.moved(&self.model);
             }
         }
     }
@@ -93,9 +91,11 @@ impl World {
         let x_pj = pose(&Mat3::from(b.tree_r), b.tree_p.into());
         let x_jb = (x_wp * x_pj).inverse() * motion * x_wb;
         let (p, r) = (x_jb.translation, x_jb.rotation);
-        let q = &mut self.engine.state.q[b.q..b.q + 7];
+        let mut state = self.engine.state().clone();
+        let q = &mut state.q[b.q..b.q + 7];
         q.copy_from_slice(&[p.x, p.y, p.z, r.w, r.i, r.j, r.k]);
         normalize(&mut q[3..]);
+        self.engine.place(&self.model, &state);
     }
 
     fn body_pose(&self, body: usize) -> Pose {

@@ -1,6 +1,6 @@
 //! Settings of a world (W-3 … W-6), with their ranges.
 
-pub use crate::engine::Integrator;
+pub use crate::engine::{EngineKind, Integrator};
 
 /// Settings of a world.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Settings {
     pub gravity: [f64; 3],
     /// Integrator.
     pub integrator: Integrator,
+    /// Dynamics engine.
+    pub engine: EngineKind,
 }
 
 /// Shorter steps drown in rounding, s.
@@ -31,6 +33,7 @@ impl Default for Settings {
             time_scale: 1.0,
             gravity: [0.0, 0.0, -9.80665],
             integrator: Integrator::default(),
+            engine: EngineKind::default(),
         }
     }
 }
@@ -39,6 +42,7 @@ impl Settings {
     /// # Errors
     /// Names the setting that is out of range, its value and the range.
     pub fn check(&self) -> Result<(), String> {
+        self.engine.available()?;
         let ranged = |name: &str, value: f64, low: f64, high: f64, unit: &str| {
             if value >= low && value <= high {
                 Ok(())

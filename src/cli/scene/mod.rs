@@ -9,7 +9,7 @@ mod start;
 use crate::contact::Defaults;
 use crate::math::{Pose, Quat};
 use crate::model::{Base, Collider, EFFECT_NAMES};
-use crate::world::{Integrator, Settings};
+use crate::world::{EngineKind, Integrator, Settings};
 pub use assemble::{Assembly, Fault, Spare, Switch, assemble, switch_effect};
 use body::BodyEntry;
 use file::{Robot, SceneFile, WorldSettings};
@@ -235,5 +235,16 @@ pub fn integrator(name: &str) -> Result<Integrator, String> {
     Integrator::by_name(name).ok_or_else(|| {
         let known: Vec<&str> = Integrator::NAMES.iter().map(|(n, _)| *n).collect();
         format!("integrator '{name}' does not exist; choose one of: {}", known.join(", "))
+    })
+}
+
+/// An engine by name.
+///
+/// # Errors
+/// Names those that exist.
+pub fn engine(name: &str) -> Result<EngineKind, String> {
+    EngineKind::by_name(name).ok_or_else(|| {
+        let known: Vec<&str> = EngineKind::NAMES.iter().map(|(n, _)| *n).collect();
+        format!("engine '{name}' does not exist; choose one of: {}", known.join(", "))
     })
 }

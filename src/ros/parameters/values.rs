@@ -3,7 +3,7 @@
 use super::table::{Definition, When, table};
 use crate::model::Base;
 use crate::ros::exchange::Pace;
-use crate::world::{Integrator, Settings};
+use crate::world::{EngineKind, Integrator, Settings};
 use ros2_client::ParameterValue as V;
 
 /// Names of the integrators; the first one is the default.
@@ -134,6 +134,7 @@ impl Values {
             time_scale: self.double("time_scale"),
             gravity,
             integrator: Integrator::by_name(self.text("integrator")).unwrap_or_default(),
+            engine: EngineKind::by_name(self.text("engine")).unwrap_or_default(),
         };
         Pace {
             settings,
