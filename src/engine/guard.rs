@@ -1,7 +1,7 @@
-//! The last resort of a step that even its shortest pieces cannot resolve: whirling so fast that the velocity products of an
-//! explicit step would make energy out of nothing.
+//! Steps that had to be halved because they do not resolve a whirl, and pieces that even the shortest of them cannot resolve, which are
+//! made explicitly: the velocity products would make energy out of nothing.
 //!
-//! Such a piece is made explicitly, and then the motion relative to the body as a whole is slowed down until the energy is
+//! After such a piece the motion relative to the body as a whole is slowed down until the energy is
 //! what the drives and the weight have paid for. The momentum of every robot, body or piece that floats stays: its kinetic energy
 //! splits, without a cross term, into that of the locked body with the same momentum and the rest (König). What stands on a fixed
 //! base has no locked motion. Each such piece is counted, and what it took is added up.

@@ -110,6 +110,9 @@ impl Rbx {
                 end @ (End::Converged | End::Unsettled) => {
                     report.unsettled |= matches!(end, End::Unsettled);
                     self.take(m, mid, (part.h, part.gravity));
+                    if depth > 0 && report.halvings > 0 {
+                        self.guard(m, mid, part.gravity, report);
+                    }
                     let owed = self.pay(m, &mid.start, part.gravity, report);
                     report.trimmed_energy += self.lower(m, mid, part.h, (part.gravity, owed));
                 }

@@ -33,6 +33,8 @@ const EXTRA: u32 = 100;
 const BAD: f64 = 0.05;
 /// Gaps that differ by less are equal, m.
 const FLUSH: f64 = 1e-10;
+/// A contact whose gap is less than this at the start of a step is held as it is, m: it is not asked for the speed that closes it.
+const CLOSED: f64 = 1e-8;
 
 /// One contact of the last step, in the world.
 #[derive(Clone, Copy, Debug, Default)]

@@ -45,13 +45,8 @@ impl AxisSet {
     pub(super) fn contested_input(&mut self, axis: usize, h: f64) -> Input {
         let (law, k) = (&self.laws[axis], self.place[axis] / 2);
         let (left, right) = law.held(k);
-        let base = if right.is_finite() {
-            right
-        } else if left.is_finite() {
-            left
-        } else {
-            0.0
-        };
+        // No torque, if that is between the ends: rows that are given up leave the axis alone.
+        let base = 0.0_f64.max(right).min(left);
         let c = &mut self.contests[axis];
         (c.base, c.lower, c.upper) = (base, (right - base) * h, (left - base) * h);
         let slope = law.segments[k].slope;

@@ -6,7 +6,7 @@
 //! the velocities plus `−u_t·e / |x_t|`. Discs at their rim follow the normal impulse likewise.
 
 use super::dense::{Cholesky, Lu, dot};
-use super::rows::{Block, CHUNK, FINISH_ROWS, Inner, Kind, Rows};
+use super::rows::{Block, CHUNK, FINISH_ROWS, Inner, Kind, NEARLY, Rows};
 
 /// Linearisations in one finish of many rows.
 const TRIES: usize = 3;
@@ -16,12 +16,15 @@ const LARGE: usize = 40;
 /// nothing), with 10 less than 1; the mean is then 2.0 instead of 1.8.
 pub(super) const MANY: usize = 10;
 /// Softness of the linearised problem, relative to a row's own mobility: internal forces that nothing determines (a box on
-/// four corners) stay near those of the iteration. It is not in the residual: what Newton solves is exact.
+/// four corners) are the least ones. It is not in the residual: what Newton solves is exact.
 const SOFT: f64 = 1e-10;
-/// A residual this small against the velocities at the start is not worth another try that may not help.
-const ROUNDING: f64 = 1e-12;
+/// A residual that is nearly the wanted one is not worth another try if the last one left more than this share of it.
+const LEFT: f64 = 0.3;
 /// Sweeps from where it started after the first try that did not help; after the n-th, n times as many.
-const SWEEPS: u32 = 10;
+const SWEEPS: u32 = 5;
+/// An impulse within this share of its cone sticks in the first try: the velocities of the last solution would call for slipping that
+/// the new one need not have.
+const INSIDE: f64 = 1.0 - 1e-6;
 
 /// No unknown, no row.
 const NONE: usize = usize::MAX;
@@ -41,6 +44,8 @@ pub(super) struct Scratch {
     velocity: Vec<f64>,
     lu: Lu,
     cholesky: Cholesky,
+    /// Is it the first try?
+    first: bool,
     /// Changes of the unknowns.
     found: Vec<f64>,
     /// Impulses before a try, and the best.
@@ -170,9 +175,9 @@ impl Scratch {
 }
 
 impl Rows {
-    /// Improves the impulses to a residual of `wanted`, where velocities have the size `scale`; returns the residual, which
+    /// Improves the impulses to a residual of `wanted`; returns the residual, which
     /// never grows, and the number of tries: at most `tries`.
-    pub(super) fn finish(&mut self, mut residual: f64, wanted: f64, (scale, tries): (f64, usize)) -> (f64, u32) {
+    pub(super) fn finish(&mut self, mut residual: f64, wanted: f64, tries: usize) -> (f64, u32) {
         let mut s = std::mem::take(&mut self.finish);
         self.fill(&mut s.a);
         let size = self.rows.len().max(1);
@@ -181,7 +186,9 @@ impl Rows {
         self.keep(&mut s.best);
         while residual > wanted && tries < most {
             tries += 1;
+            let before = residual;
             self.keep(&mut s.kept);
+            s.first = tries == 1;
             self.newton(&mut s);
             let mut better = self.lower(&mut residual);
             if !better {
@@ -197,7 +204,8 @@ impl Rows {
             there = better;
             if better {
                 self.keep(&mut s.best);
-            } else if residual <= ROUNDING * scale {
+            }
+            if residual > LEFT * before && residual <= NEARLY * wanted {
                 break;
             }
         }
@@ -299,12 +307,19 @@ impl Rows {
         }
     }
 
-    /// One step of Newton's method, from the impulses and the w that are there.
+    /// One step of Newton's method, from the impulses and the w that are there. It solves for impulses, not for their changes: what
+    /// nothing determines (a box on four corners) is then least, far from the rims of the cones, and does not depend on what
+    /// was before.
     fn newton(&mut self, s: &mut Scratch) {
         s.unknowns.clear();
         s.links.fill(FIXED);
         for k in 0..self.blocks.len() {
             self.linearise(k, s);
+        }
+        for (row, x) in self.rows.iter_mut().enumerate() {
+            if s.moves(row).iter().any(|(unknown, _)| *unknown != NONE) {
+                x.impulse = 0.0;
+            }
         }
         self.gather();
         for b in &self.blocks {
@@ -336,6 +351,9 @@ impl Rows {
             },
             (Inner::Cone(inner), Kind::Cone { friction }) => {
                 let [normal, tangent] = inner.diagonal();
+                if s.first && x[0] > 0.0 && length([x[1], x[2]]) < INSIDE * friction * x[0] {
+                    return (first..first + 3).for_each(|row| s.plain(row));
+                }
                 let pressed = x[0] - u[0] / normal;
                 if pressed <= 0.0 {
                     self.rows[first..first + 3].iter_mut().for_each(|r| r.impulse = 0.0);
@@ -400,6 +418,10 @@ fn shorten(rows: &mut [super::rows::Row], radius: f64) {
     }
 }
 
+fn length(x: [f64; 2]) -> f64 {
+    (x[0] * x[0] + x[1] * x[1]).sqrt()
+}
+
 /// Where an impulse of two rows is in its disc.
 enum Way {
     Inside,
@@ -409,7 +431,7 @@ enum Way {
 impl Way {
     fn of(x: [f64; 2], u: [f64; 2], step: f64, radius: f64) -> Self {
         let to = [x[0] - step * u[0], x[1] - step * u[1]];
-        let size = (to[0] * to[0] + to[1] * to[1]).sqrt();
+        let size = length(to);
         if size <= radius {
             return Self::Inside;
         }

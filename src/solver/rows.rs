@@ -9,8 +9,10 @@ pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
 const NEAR: f64 = 1e-9;
 /// A contact whose normal moves by less than this share of its tangents is held.
 const DEAD: f64 = 1e-12;
+/// A residual within this many times the wanted one is not worth another try that may not help.
+pub(super) const NEARLY: f64 = 1e3;
 /// More rows than this are left to the iteration: the direct finish costs their cube.
-pub const FINISH_ROWS: usize = 60;
+pub const FINISH_ROWS: usize = 120;
 
 /// What the impulses of a block may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -252,7 +254,7 @@ impl Rows {
         }
         solved.residual = self.residual();
         if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
-            (solved.residual, solved.tries) = self.finish(solved.residual, wanted, (solved.scale, tries));
+            (solved.residual, solved.tries) = self.finish(solved.residual, wanted, tries);
         }
         solved
     }

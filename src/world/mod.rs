@@ -35,8 +35,8 @@ pub struct Stats {
     pub divided_steps: u64,
     /// Pieces of steps, the shortest there are, in which they still did: they may have passed through each other.
     pub fast_pieces: u64,
-    /// Pieces of steps that even the shortest piece did not resolve: their motion was slowed down to the energy that drives and
-    /// weight had paid for.
+    /// Pieces of steps that were not resolved (the shortest ones that did not contract, and halved ones that gained energy): their
+    /// motion was slowed down to the energy that drives and weight had paid for.
     pub guarded_pieces: u64,
     /// What they lost, J.
     pub guarded_energy: f64,

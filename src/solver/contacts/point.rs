@@ -1,6 +1,6 @@
 //! One contact: its rows, what they are asked, and what they give.
 
-use super::{Pass, approach, turning};
+use super::{CLOSED, Pass, approach, turning};
 use crate::contact::{Placed, Touch};
 use crate::dynamics::{Columns, Kinematics, Layout, Push, Response, Workspace};
 use crate::math::V3;
@@ -61,7 +61,7 @@ impl Point {
         self.middle_speed = self.placed.normal.dot(approach(middle, &self.touch, self.placed.point));
         let touching = if pass.mean { self.start.1 - self.middle_speed } else { 0.0 };
         let closing = if pass.mean { -2.0 * self.gap / pass.h - self.middle_speed } else { -self.gap / pass.h };
-        self.floor = touching.min(closing);
+        self.floor = if self.gap.abs() < CLOSED { touching } else { touching.min(closing) };
     }
 
     pub(super) fn add_cone(&mut self, t: &mut Target, middle: &Kinematics) {
