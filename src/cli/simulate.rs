@@ -204,6 +204,8 @@ impl<'a> Plan<'a> {
             "guarded_pieces": s.guarded_pieces,
             "guarded_energy": s.guarded_energy,
             "trimmed_energy": s.trimmed_energy,
+            "tempered_steps": s.tempered_steps,
+            "worst_residual": s.worst_residual,
             "energy": self.ledger(outcome.energy),
             "pole_steps": s.pole_steps,
             "broken_joints": broken,
