@@ -1,7 +1,7 @@
 //! `realnoid check`: every finding with its line and mend.
 
 use super::load::{Source, examine};
-use super::scene::{Fault, Scene, Spare, assemble};
+use super::scene::{Fault, Scene, Spare, assemble, inside};
 use crate::description::render;
 use crate::math::Pose;
 use crate::model::Base;
@@ -42,7 +42,7 @@ fn is_sound(scene: &Scene, source: Source) -> bool {
     let stand = (scene.base.unwrap_or_default(), scene.robot.pose);
     match assemble(scene, source, stand, Spare::Humanoid, &|m| scene.switch_effects(m)) {
         Ok(all) => {
-            all.warnings.iter().for_each(|w| eprintln!("warning: {w}"));
+            all.warnings.iter().chain(&inside(&all.model, &all.initial)).for_each(|w| eprintln!("warning: {w}"));
             true
         }
         Err(Fault::Scene(reason) | Fault::Robot(reason)) => {

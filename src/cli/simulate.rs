@@ -5,7 +5,7 @@ use super::commands::{self, axis};
 use super::load::Loaded;
 use super::outcome::{Outcome, Peak, Progress, counted};
 use super::scene::{
-    Assembly, Fault, Scene, Spare, assemble, couple, integrator, interval_ns, outside, pose, switch_effect,
+    Assembly, Fault, Scene, Spare, assemble, couple, inside, integrator, interval_ns, outside, pose, switch_effect,
 };
 use super::script::Script;
 use crate::description::Severity;
@@ -103,6 +103,7 @@ impl<'a> Plan<'a> {
         let mut warnings = warnings(&loaded);
         warnings.extend(about_others);
         warnings.extend(outside(world.model(), world.state()).map(|(_, said)| said + ": its stop pushes it back"));
+        warnings.extend(inside(world.model(), world.state()));
         warnings.extend(beyond(&world));
         if intervals == 0 && args.duration > 0.0 {
             warnings.push("the duration is less than half a control interval: no step is made".into());

@@ -76,11 +76,13 @@ fn drawn(seed: u64, standing: impl FnOnce(bool) -> Standing) -> Draw {
         ]
     };
     let mut d = Draw { forms, masses, surface, standing, gravity, h, steps, poses: at(0.0), twists };
+    let corners = d.standing.corners();
+    let mut touching = Touching::new(&d);
     let mut distance = 0.15;
     while distance < 2.0 {
         d.poses = at(distance);
         d.poses.iter_mut().for_each(|p| p.translation.vector.z += 0.5 * (distance - 0.15));
-        if d.overlap() < START {
+        if touching.overlap(&d, &corners) < START {
             break;
         }
         distance += 0.05;
@@ -88,20 +90,33 @@ fn drawn(seed: u64, standing: impl FnOnce(bool) -> Standing) -> Draw {
     d
 }
 
-impl Draw {
-    fn overlap(&self) -> f64 {
-        let mut s = Scene::new(&self.forms);
-        let standing = self.standing.forms().into_iter().map(|form| scene::collider(form, None, Pose::identity()));
-        s.model.colliders.extend(standing);
-        let mut touches = vec![];
-        (0..2).for_each(|k| s.place(k, self.poses[k]));
-        if let Some(mut detector) = Detector::new(&s.model) {
-            detector.find(&s.k, 0.0, &mut touches);
-        }
-        let told = touches.iter().map(|t| -t.placed(&s.k).gap).fold(0.0, f64::max);
-        (0..2).filter_map(|k| self.standing.sunk(&self.forms[k], &self.poses[k])).fold(told, f64::max)
+/// The scene as the detector sees it.
+struct Touching {
+    scene: Scene,
+    detector: Option<Detector>,
+}
+
+impl Touching {
+    fn new(d: &Draw) -> Self {
+        let mut scene = Scene::new(&d.forms);
+        let standing = d.standing.forms().into_iter().map(|form| scene::collider(form, None, Pose::identity()));
+        scene.model.colliders.extend(standing);
+        let detector = Detector::new(&scene.model);
+        Self { scene, detector }
     }
 
+    fn overlap(&mut self, d: &Draw, corners: &[Vec3]) -> f64 {
+        let mut touches = vec![];
+        (0..2).for_each(|k| self.scene.place(k, d.poses[k]));
+        if let Some(detector) = &mut self.detector {
+            detector.find(&self.scene.k, 0.0, &mut touches);
+        }
+        let told = touches.iter().map(|t| -t.placed(&self.scene.k).gap).fold(0.0, f64::max);
+        (0..2).filter_map(|k| d.standing.sunk(corners, &d.forms[k], &d.poses[k])).fold(told, f64::max)
+    }
+}
+
+impl Draw {
     /// Colliders of the world come before those of the two bodies.
     pub fn first(&self) -> usize {
         self.standing.forms().len()
@@ -146,20 +161,21 @@ pub fn poses(w: &World) -> [Pose; 2] {
 pub struct Inside {
     way: Vec3,
     rng: Random,
+    corners: Vec<Vec3>,
     /// Has a body gone beyond the end of an open surface?
     gone: [bool; 2],
 }
 
 impl Inside {
-    pub fn new() -> Self {
-        Self { way: Vec3::z(), rng: Random(1), gone: [false; 2] }
+    pub fn new(d: &Draw) -> Self {
+        Self { way: Vec3::z(), rng: Random(1), corners: d.standing.corners(), gone: [false; 2] }
     }
 
     /// At most as much as `enough`, or what it is at most, m: each direction in which two convex bodies are apart proves that.
     pub fn most(&mut self, d: &Draw, x: &[Pose; 2], enough: f64) -> f64 {
         let mut most = self.pair(d, x, enough);
         for k in 0..2 {
-            match d.standing.sunk(&d.forms[k], &x[k]) {
+            match d.standing.sunk(&self.corners, &d.forms[k], &x[k]) {
                 Some(depth) if !self.gone[k] => most = most.max(depth),
                 _ => self.gone[k] = true,
             }

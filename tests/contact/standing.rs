@@ -73,8 +73,15 @@ impl Standing {
         }
     }
 
-    /// How far a body is inside, m, at least; at points of its boundary. `None` where an open surface does not reach.
-    pub fn sunk(&self, form: &ContactForm, x: &Pose) -> Option<f64> {
+    /// Corners of the surface.
+    pub fn corners(&self) -> Vec<Vec3> {
+        let of = |form: ContactForm| if let ContactForm::Surface(mesh) = form { mesh.vertices.clone() } else { vec![] };
+        self.forms().into_iter().flat_map(of).collect()
+    }
+
+    /// How far a body is inside, m: at points of its boundary, and at these corners of the surface. `None` where an open surface
+    /// does not reach.
+    pub fn sunk(&self, corners: &[Vec3], form: &ContactForm, x: &Pose) -> Option<f64> {
         let mut most = 0.0f64;
         if let Self::Terrain(_) = self {
             let reach = 0.5 * CELL * (SIDE - 1) as f64 - 0.6;
@@ -90,12 +97,12 @@ impl Standing {
             Self::Terrain(_) => {}
             _ => most = most.max(-lowest),
         }
-        for i in 0..5 * 5 * 5 {
-            let digit = |k: i32| f64::from(i / k % 5 - 2);
-            let d = Vec3::new(digit(1), digit(5), digit(25));
-            if d.norm() > 0.0 {
-                most = most.max(self.depth((x * nalgebra::Point3::from(support(form, &d))).coords));
-            }
+        for d in around() {
+            most = most.max(self.depth((x * nalgebra::Point3::from(support(form, &d))).coords));
+        }
+        // What stands may poke into a body between those points.
+        for corner in corners.iter().filter(|c| (*c - x.translation.vector).norm() < 0.45) {
+            most = most.max(covered(form, &x.inverse_transform_point(&(*corner).into()).coords, most));
         }
         Some(most.max(self.depth(x.translation.vector)))
     }
@@ -110,6 +117,34 @@ impl Standing {
             Self::Pipe(inner, outer, height) => (r - inner).min(outer - r).min(height - p.z),
         }
     }
+}
+
+/// Directions all around.
+fn around() -> impl Iterator<Item = Vec3> {
+    let digit = |i: i32, k: i32| f64::from(i / k % 5 - 2);
+    (0..125).filter(|i| *i != 62).map(move |i| Vec3::new(digit(i, 1), digit(i, 5), digit(i, 25)).normalize())
+}
+
+/// How deep a point lies in a convex form, m; any less than `enough` where it is less.
+fn covered(form: &ContactForm, p: &Vec3, enough: f64) -> f64 {
+    let out = |n: &Vec3| n.dot(&(support(form, n) - p));
+    let mut best = (f64::INFINITY, Vec3::z());
+    for n in around() {
+        best = if out(&n) < best.0 { (out(&n), n) } else { best };
+        if best.0 <= enough {
+            return best.0;
+        }
+    }
+    let (mut rng, mut wide) = (Random(1), 0.5);
+    for _ in 0..300 {
+        let n = (best.1 + rng.vec3(wide)).normalize();
+        if out(&n) < best.0 {
+            best = (out(&n), n);
+        } else {
+            wide = (0.97 * wide).max(1e-4);
+        }
+    }
+    best.0
 }
 
 fn terrain(heights: &[f64]) -> TriMesh {
