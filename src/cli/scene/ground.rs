@@ -1,7 +1,7 @@
 //! The ground, and what surfaces are like where nothing says otherwise.
 
 use super::file::{Ground, SurfaceValues};
-use super::limits::{shown, within};
+use super::limits::{plain, shown, within};
 use crate::contact::Defaults;
 use crate::description::MOST_FRICTION;
 use crate::math::{Pose, Quat, Vec3};
@@ -58,7 +58,7 @@ pub(super) fn ground(value: &Value, defaults: Defaults) -> Result<Option<Collide
         Value::Bool(false) => Ok(None),
         Value::Bool(true) | Value::Null => Ok(Some(flat(defaults))),
         Value::Object(_) => {
-            let given = Ground::deserialize(value).map_err(|e| e.to_string())?;
+            let given = Ground::deserialize(value).map_err(|e| plain(&e.to_string()))?;
             laid(&given, defaults).map(Some)
         }
         other => Err(format!("{other}: must be true, false, or what the ground is like")),

@@ -11,7 +11,7 @@ pub(super) fn shown(x: f64) -> String {
 
 /// # Errors
 /// Names the first of some values that is not finite or beyond the limit.
-pub(super) fn within(name: &str, unit: &str, values: &[f64]) -> Result<(), String> {
+pub fn within(name: &str, unit: &str, values: &[f64]) -> Result<(), String> {
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     match values.iter().find(|x| !(x.abs() <= MOST)) {
         Some(x) if !x.is_finite() => Err(format!("{name}: {x} is not a finite number")),
@@ -31,6 +31,10 @@ pub(super) fn plain(said: &str) -> String {
             "; a scene file holds one: leave out what begins with ---",
         ),
         ("invalid u32", "must be a whole number, 0 or greater"),
+        ("invalid floating point", "must be a number"),
+        ("expected string scalar", "must be one value, not a list"),
+        ("cannot deserialize null into string; use Option<String>", "must be a word"),
+        ("invalid type: null, expected f64", "must be a number"),
         ("invalid boolean", "must be true or false"),
         ("expected mapping start", "expected `key: value` pairs, as in {key: value}"),
     ];

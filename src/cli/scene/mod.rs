@@ -15,7 +15,8 @@ pub use assemble::{Assembly, Fault, Spare, Switch, assemble, switch_effect};
 use body::BodyEntry;
 use file::{Robot, SceneFile, WorldSettings};
 use ground::ground;
-use limits::{plain, shown, within};
+pub use limits::within;
+use limits::{plain, shown};
 use nalgebra::{Quaternion, Translation3};
 use serde_saphyr::{Location, Spanned};
 pub use start::{Start, couple, inside, outside};
@@ -102,6 +103,11 @@ impl Scene {
     pub fn lay_ground(&mut self) {
         let defaults = self.defaults;
         self.ground.get_or_insert_with(|| ground::flat(defaults));
+    }
+
+    /// Who stands in for a robot that neither the command line nor the scene names: nobody, where the scene has something else.
+    pub fn spare(&self) -> Spare {
+        if self.has_company() { Spare::Nobody } else { Spare::Humanoid }
     }
 
     /// True if there is more in the scene than the first robot.
