@@ -174,10 +174,10 @@ impl Inside {
     /// At most as much as `enough`, or what it is at most, m: each direction in which two convex bodies are apart proves that.
     pub fn most(&mut self, d: &Draw, x: &[Pose; 2], enough: f64) -> f64 {
         let mut most = self.pair(d, x, enough);
-        for k in 0..2 {
+        for (k, gone) in self.gone.iter_mut().enumerate() {
             match d.standing.sunk(&self.corners, &d.forms[k], &x[k]) {
-                Some(depth) if !self.gone[k] => most = most.max(depth),
-                _ => self.gone[k] = true,
+                Some(depth) if !*gone => most = most.max(depth),
+                _ => *gone = true,
             }
         }
         most

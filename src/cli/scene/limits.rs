@@ -11,9 +11,9 @@ pub(super) fn shown(x: f64) -> String {
 
 /// # Errors
 /// Names the first of some values that is not finite or beyond the limit.
-pub fn within(name: &str, unit: &str, values: &[f64]) -> Result<(), String> {
+pub(super) fn within(name: &str, unit: &str, values: &[f64]) -> Result<(), String> {
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    match values.iter().find(|x| !(x.abs() <= MOST)) {
+    match values.iter().find(|x| !(-MOST..=MOST).contains(*x)) {
         Some(x) if !x.is_finite() => Err(format!("{name}: {x} is not a finite number")),
         Some(x) => Err(format!("{name} is {}{unit}; it must be from -{MOST} to {MOST}{unit}", shown(*x))),
         None => Ok(()),

@@ -15,8 +15,7 @@ pub use assemble::{Assembly, Fault, Spare, Switch, assemble, switch_effect};
 use body::BodyEntry;
 use file::{Robot, SceneFile, WorldSettings};
 use ground::ground;
-pub use limits::within;
-use limits::{plain, shown};
+use limits::{plain, shown, within};
 use nalgebra::{Quaternion, Translation3};
 use serde_saphyr::{Location, Spanned};
 pub use start::{Start, couple, inside, outside};
@@ -32,6 +31,8 @@ pub struct Scene {
     pub given: Vec<&'static str>,
     /// The first robot.
     pub robot: RobotEntry,
+    /// The file speaks of it.
+    has_robot: bool,
     /// How its root is held, if the scene says so.
     pub base: Option<Base>,
     /// Effects to switch, by name; every name exists.
@@ -86,6 +87,7 @@ impl Scene {
         }
         let world = or_nothing(file.world);
         let settings = at_line(&world, "world", settings(&world.value))?;
+        let has_robot = file.robot.is_some();
         let (base, robot) = first(or_nothing(file.robot), path)?;
         let defaults = or_nothing(file.defaults);
         let defaults = at_line(&defaults, "defaults: surface", ground::defaults(&defaults.value.surface))?;
@@ -96,7 +98,7 @@ impl Scene {
         let (given, effects) = (given(&world.value), world.value.effects);
         let (robots, bodies, path) = (robots?, bodies?, path.to_owned());
         unique(robots.iter().map(|r| (&r.place, &r.name)).chain(bodies.iter().map(|b| (&b.place, &b.name))))?;
-        Ok(Self { settings, given, robot, base, effects, ground, robots, bodies, defaults, path })
+        Ok(Self { settings, given, robot, has_robot, base, effects, ground, robots, bodies, defaults, path })
     }
 
     /// The flat ground z = 0, if the scene has none of its own.
@@ -105,9 +107,10 @@ impl Scene {
         self.ground.get_or_insert_with(|| ground::flat(defaults));
     }
 
-    /// Who stands in for a robot that neither the command line nor the scene names: nobody, where the scene has something else.
+    /// Who stands in for a robot that neither the command line nor the scene names: nobody, where the scene does not speak of
+    /// one, but of something else.
     pub fn spare(&self) -> Spare {
-        if self.has_company() { Spare::Nobody } else { Spare::Humanoid }
+        if self.has_company() && !self.has_robot { Spare::Nobody } else { Spare::Humanoid }
     }
 
     /// True if there is more in the scene than the first robot.
