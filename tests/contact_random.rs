@@ -11,6 +11,7 @@ mod support;
 mod touching;
 
 use drawn::{Draw, Inside, START, draw, draw_on_surfaces, poses};
+use realnoid::math::Vec3;
 use realnoid::world::World;
 
 /// What a run of one scene came to, as multiples of what is allowed.
@@ -30,6 +31,13 @@ fn turning(w: &World) -> f64 {
     w.model().bodies[1..].iter().map(|b| v[b.v..b.v + 3].iter().map(|x| x * x).sum::<f64>().sqrt()).sum()
 }
 
+/// Velocity of the second body against the first, m/s.
+fn relative(w: &World) -> Vec3 {
+    let x = poses(w);
+    let velocity = |k: usize| x[k].rotation * Vec3::from_column_slice(&w.state().v[6 * k + 3..6 * k + 6]);
+    velocity(1) - velocity(0)
+}
+
 /// Runs a scene.
 ///
 /// Energy: a step all of whose bodies are in contact ends with at most the energy it began with (`engine/paid.rs`), up to
@@ -37,7 +45,9 @@ fn turning(w: &World) -> f64 {
 /// end lies e·v·h higher: where the motion has less energy than that, v²/2 < g·e·v·h, there is nothing to take it from, so that
 /// at most 2 e² g h² of height is gained (seed 46: 5e-4 J of 350 J, a block of 17 kg that comes to rest at 10 ms).
 /// Depth: the rows hold the points that were found at the start of a step; how far others come in meanwhile is bounded by what
-/// the bodies turn, times their reach. A fifth of a depth is taken back per step, so that turns of five steps may add up.
+/// the bodies turn, times their reach. A fifth of a depth is taken back per step, so that turns of five steps may add up. Touches
+/// that could close are looked for with the velocities at the start: while something that stands stops one body, and nothing
+/// is between the two, they may come nearer by h times the change of their relative velocity, until the next step finds them.
 fn run(d: &Draw) -> Result<Found, String> {
     let mut w = d.build();
     let mut f = Found::default();
@@ -46,6 +56,7 @@ fn run(d: &Draw) -> Result<Found, String> {
     let scale = before.kinetic + 2.0 * weight;
     let mut turn = turning(&w);
     let mut inside = Inside::new(d);
+    let (mut late, mut latest, mut apart) = (0.0, 0.0f64, relative(&w));
     for step in 0..d.steps {
         let counted = w.stats();
         w.advance();
@@ -64,7 +75,12 @@ fn run(d: &Draw) -> Result<Found, String> {
             f.gain = f.gain.max((now.kinetic + now.potential - before.kinetic - before.potential) / bound);
         }
         before = now;
-        let bound = START + 5.0 * turn * d.h * 0.45 + 1e-6;
+        let between = |c: &&realnoid::world::ContactPoint| c.colliders[0] >= first;
+        let blow = !w.contacts().is_empty() && w.contacts().iter().find(between).is_none();
+        let change = (relative(&w) - std::mem::replace(&mut apart, relative(&w))).norm();
+        late = 0.8 * late + if blow { d.h * change } else { 0.0 };
+        latest = latest.max(late);
+        let bound = START + 5.0 * turn * d.h * 0.45 + latest + 1e-6;
         f.deep = f.deep.max(stats.worst_penetration / bound);
         f.inside = f.inside.max(inside.most(d, &poses(&w), bound) / bound);
     }
@@ -97,14 +113,19 @@ fn count() -> u64 {
     std::env::var("SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(8000)
 }
 
+/// So many of them: a surface of thousands of triangles costs ten times as much as a floor.
+fn on_surfaces() -> u64 {
+    count() / 8
+}
+
 #[test]
 fn random_scenes_keep_energy_and_depth() {
-    scenes(0..count() / 2, draw);
+    scenes(0..count() - on_surfaces(), draw);
 }
 
 #[test]
 fn random_scenes_on_surfaces_keep_energy_and_depth() {
-    scenes(count() / 2..count(), draw_on_surfaces);
+    scenes(count() - on_surfaces()..count(), draw_on_surfaces);
 }
 
 #[test]
@@ -121,6 +142,17 @@ fn trace() {
         let before = w.state().clone();
         w.advance();
         let s = w.stats();
+        if std::env::var("STEP").is_ok_and(|at| at == step.to_string()) {
+            let mut k = realnoid::dynamics::Kinematics::new(w.model());
+            realnoid::dynamics::kinematics(w.model(), &mut k, &before.q, &before.v);
+            let mut t = vec![];
+            realnoid::contact::Detector::new(w.model()).unwrap().find(&k, d.h, &mut t);
+            t.iter().for_each(|t| println!("at {step}: {t:?} {:?} q {:?}", t.placed(&k), before.q));
+            println!(
+                "apart {:?}",
+                drawn::apart(&d, &[before.q[..7].to_vec(), before.q[7..].to_vec()].map(|q| drawn::pose(&q)))
+            );
+        }
         let true_depth = inside.most(&d, &poses(&w), 0.0);
         if true_depth > 1e-4 {
             println!("step {step} inside {true_depth}");
@@ -170,6 +202,14 @@ fn two_bodies_bounce_once() {
 #[test]
 fn the_top_of_a_wall_is_not_its_side() {
     let found = run(&draw_on_surfaces(4317)).unwrap();
+    assert!(found.deep.max(found.inside) <= 1.0, "{found:?}");
+}
+
+/// Two bodies fall side by side, 8 mm from each other; the floor stops the lower one within a step of 10 ms, and the other comes
+/// 1.4 cm in before the next step finds it.
+#[test]
+fn a_blow_beside_is_found_a_step_late() {
+    let found = run(&draw(93639)).unwrap();
     assert!(found.deep.max(found.inside) <= 1.0, "{found:?}");
 }
 

@@ -150,11 +150,18 @@ impl Draw {
 
 /// Where the two bodies are.
 pub fn poses(w: &World) -> [Pose; 2] {
-    [1, 2].map(|k| {
-        let q = &w.state().q[w.model().bodies[k].q..];
-        let turn = nalgebra::Quaternion::new(q[3], q[4], q[5], q[6]);
-        Pose::from_parts(Vec3::new(q[0], q[1], q[2]).into(), nalgebra::Unit::new_normalize(turn))
-    })
+    [1, 2].map(|k| pose(&w.state().q[w.model().bodies[k].q..]))
+}
+
+/// Of a floating body's coordinates.
+pub fn pose(q: &[f64]) -> Pose {
+    let turn = nalgebra::Quaternion::new(q[3], q[4], q[5], q[6]);
+    Pose::from_parts(Vec3::new(q[0], q[1], q[2]).into(), nalgebra::Unit::new_normalize(turn))
+}
+
+/// How far two bodies are apart at least, m.
+pub fn apart(d: &Draw, x: &[Pose; 2]) -> f64 {
+    -Inside::new(d).pair(d, x, f64::NEG_INFINITY)
 }
 
 /// How far two bodies and what stands are inside each other, found without the detector.
