@@ -5,7 +5,7 @@
 mod urdf;
 
 use realnoid::cli::load::Source;
-use realnoid::cli::scene::{Assembly, Fault, Scene, Spare, assemble};
+use realnoid::cli::scene::{Assembly, Fault, Scene, Spare, assemble, inside};
 use realnoid::engine::State;
 use realnoid::math::{Pose, Vec3};
 use realnoid::model::{Base, JointType, LinkFrame, Model};
@@ -184,13 +184,71 @@ fn faults_name_the_line_and_the_place() {
         ("robots:\n  - {name: r, urdf: nowhere.urdf}\n", vec!["robots[0] 'r'", "nowhere.urdf"]),
         ("robots:\n  - {name: r, urdf: leg.urdf, set: {elbow: 1}}\n", vec!["robots[0] 'r'", "elbow", "knee_pitch"]),
         ("robots:\n  - {name: r, urdf: leg.urdf, twist: [0, 0, 0, 1, 0, 0]}\n", vec!["robots[0] 'r'", "twist", "free"]),
-        ("robot: {name: r}\n", vec!["robot", "name"]),
+        ("robot: {name: r}\n", vec!["line 2: robot", "name"]),
+        ("robot: {urdf: nowhere.urdf}\n", vec!["scene.yaml", "line 2: robot", "nowhere.urdf"]),
+        (
+            "robot: {urdf: leg.urdf, set: {knee_pitch: 1e300}}\n",
+            vec!["line 2: robot", "knee_pitch is 1e300", "1000000"],
+        ),
+        ("world: {gravity: [0, 0, .nan]}\n", vec!["line 2: world", "gravity z"]),
+        ("world: {control_interval: 1e-30}\n", vec!["line 2: world", "1e-30 s", "0.000001"]),
+        ("world: {effects: {gravty: true}}\n", vec!["line 2: world", "gravty", "gravity"]),
+        ("world: {steps_per_interval: -1}\n", vec!["line 2", "whole number"]),
+        ("ground: {friction: 1e308}\n", vec!["line 2: ground", "friction is 1e308", "from 0 to 1000000"]),
+        ("ground: {height: 1e30}\n", vec!["line 2: ground", "height is 1e30 m"]),
+        ("ground: {friction: .nan}\n", vec!["line 2", "finite number"]),
+        ("ground: true\nground: false\n", vec!["line 3", "duplicate", "ground"]),
+        ("ground: true\n", vec!["scene.yaml", "nothing to simulate", "bodies"]),
+        (
+            &format!("bodies:\n  - {{name: a, {ball}, mass: 1, pose: [0, 0, 1e30, 0, 0, 0, 1]}}\n"),
+            vec!["line 3", "1e30 m"],
+        ),
+        (&format!("bodies:\n  - {{name: a, {ball}, mass: 1, velocity: [0, 1e9, 0]}}\n"), vec!["velocity is 1e9 m/s"]),
+        (
+            &format!("bodies:\n  - {{name: a, {ball}, mass: 1, surface: {{friction: 2e6}}}}\n"),
+            vec!["friction", "2000000"],
+        ),
+        (
+            &format!("bodies:\n  - {{name: a, {ball}, mass: 1, inertia: [1.0e-30, 0, 0, 1, 0, 1]}}\n"),
+            vec!["line 3", "inertia about an axis", "gyration"],
+        ),
+        ("bodies:\n  - {name: a, mass: 1, shape: {sphere: {radius: 1e30}}}\n", vec!["line 3", "radius is 1e30"]),
+        (
+            "bodies:\n  - {name: t, static: true, shape: {terrain: {size: [4, 4, 1], filename: nowhere.png}}}\n",
+            vec!["line 3", "does not collide", "nowhere.png"],
+        ),
     ] {
         let reason = scene(&format!("version: 1\n{text}")).err().unwrap_or_else(|| panic!("accepted: {text}"));
         for part in said {
             assert!(reason.contains(part), "'{part}' is missing in: {reason}\n{text}");
         }
     }
+}
+
+#[test]
+fn an_empty_file_is_told() {
+    for text in ["", "\n \n"] {
+        assert!(scene(text).err().unwrap().contains("the file is empty; a scene begins with version: 1"));
+    }
+}
+
+/// Bodies, robots and the ground, by the names of what collides; not what only touches, and at most so many.
+#[test]
+fn what_starts_inside_something_is_told() {
+    let ball = |name: &str, z: f64| {
+        format!("  - {{name: {name}, mass: 1, shape: {{sphere: {{radius: 0.1}}}}, pose: [0, 0, {z}, 0, 0, 0, 1]}}\n")
+    };
+    let told = |balls: &[f64]| {
+        let bodies: String = balls.iter().enumerate().map(|(i, z)| ball(&format!("b{i}"), *z)).collect();
+        let all = scene(&format!("version: 1\nground: true\nbodies:\n{bodies}")).unwrap();
+        inside(&all.model, &all.initial)
+    };
+    assert_eq!(told(&[0.1, 0.3, 1.0]), Vec::<String>::new());
+    let two = told(&[0.05, 0.21]);
+    assert!(two.len() == 2 && two[0].starts_with("'b0' and 'ground' start 50.000 mm inside"), "{two:?}");
+    assert!(two[1].starts_with("'b0' and 'b1' start 40.000 mm inside"), "{two:?}");
+    let many = told(&[1.0; 5]);
+    assert!(many.len() == 6 && many[5].starts_with("5 more pairs"), "{many:?}");
 }
 
 const BODIES: &str = "version: 1

@@ -1,7 +1,7 @@
 //! `realnoid check`: every finding with its line and mend.
 
 use super::load::{Source, examine};
-use super::scene::{Fault, Scene, Spare, assemble};
+use super::scene::{Fault, Scene, Spare, assemble, inside};
 use crate::description::render;
 use crate::math::Pose;
 use crate::model::Base;
@@ -21,6 +21,9 @@ pub fn run(source: Source, scene: Option<&Path>) -> ExitCode {
     };
     let urdf = source.urdf.or(scene.as_ref().and_then(|s| s.robot.urdf.as_deref()));
     let source = Source { urdf, ..source };
+    if let (None, Some(scene)) = (urdf, scene.as_ref().filter(|scene| scene.spare() == Spare::Nobody)) {
+        return if is_sound(scene, source) { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    }
     match examine(source, Base::Fixed, Pose::identity()) {
         Ok(examined) => {
             let mut out = std::io::stdout();
@@ -40,9 +43,9 @@ pub fn run(source: Source, scene: Option<&Path>) -> ExitCode {
 /// Says what is wrong with a scene around a sound robot, or odd about it.
 fn is_sound(scene: &Scene, source: Source) -> bool {
     let stand = (scene.base.unwrap_or_default(), scene.robot.pose);
-    match assemble(scene, source, stand, Spare::Humanoid, &|m| scene.switch_effects(m)) {
+    match assemble(scene, source, stand, scene.spare(), &|m| scene.switch_effects(m)) {
         Ok(all) => {
-            all.warnings.iter().for_each(|w| eprintln!("warning: {w}"));
+            all.warnings.iter().chain(&inside(&all.model, &all.initial)).for_each(|w| eprintln!("warning: {w}"));
             true
         }
         Err(Fault::Scene(reason) | Fault::Robot(reason)) => {

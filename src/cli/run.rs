@@ -1,7 +1,7 @@
 //! `realnoid run`: the ROS 2 node.
 
 use super::load::{Loaded, Source};
-use super::scene::{Assembly, Fault, Scene, Spare, assemble};
+use super::scene::{Assembly, Fault, Scene, Spare, assemble, inside};
 use crate::description::{Severity, render};
 use crate::ros::parameters::Values;
 use crate::ros::{self, Environment, Robot, RosArgs};
@@ -37,7 +37,8 @@ pub fn run(source: Source, args: RosArgs) -> ExitCode {
         }
     };
     let loaded = &assembly.first;
-    warnings.iter().chain(&assembly.warnings).for_each(|w| eprintln!("warning: {w}"));
+    let inside = inside(&assembly.model, &assembly.initial);
+    warnings.iter().chain(&assembly.warnings).chain(&inside).for_each(|w| eprintln!("warning: {w}"));
     print_findings(loaded);
     let robot = Robot {
         source: loaded.description.file.to_string(),

@@ -5,7 +5,8 @@ use super::commands::{self, axis};
 use super::load::Loaded;
 use super::outcome::{Outcome, Peak, Progress, counted};
 use super::scene::{
-    Assembly, Fault, Scene, Spare, assemble, couple, engine, integrator, interval_ns, outside, pose, switch_effect,
+    Assembly, Fault, Scene, Spare, assemble, couple, engine, inside, integrator, interval_ns, outside, pose,
+    switch_effect,
 };
 use super::script::Script;
 use crate::description::Severity;
@@ -103,6 +104,7 @@ impl<'a> Plan<'a> {
         let mut warnings = warnings(&loaded);
         warnings.extend(about_others);
         warnings.extend(outside(world.model(), world.state()).map(|(_, said)| said + ": its stop pushes it back"));
+        warnings.extend(inside(world.model(), world.state()));
         warnings.extend(beyond(&world));
         if intervals == 0 && args.duration > 0.0 {
             warnings.push("the duration is less than half a control interval: no step is made".into());
@@ -204,6 +206,8 @@ impl<'a> Plan<'a> {
             "guarded_pieces": s.guarded_pieces,
             "guarded_energy": s.guarded_energy,
             "trimmed_energy": s.trimmed_energy,
+            "tempered_steps": s.tempered_steps,
+            "worst_residual": s.worst_residual,
             "energy": self.ledger(outcome.energy),
             "pole_steps": s.pole_steps,
             "broken_joints": broken,

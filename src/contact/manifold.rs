@@ -23,10 +23,22 @@ const NEAREST: u32 = 1 << 30;
 const SECOND: u32 = 1 << 28;
 
 /// Adds the points whose gap is below `reach`; `size` is that of the smaller shape.
-pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, (reach, size): (f64, f64), out: &mut Vec<Raw>) {
+pub(super) fn manifold(s: &mut Scratch, a: &Placed, b: &Placed, limits: (f64, f64), out: &mut Vec<Raw>) {
+    manifold_if(s, [a, b], limits, |_| true, out);
+}
+
+/// The same, if the nearest points, as the search finds them at first, are `wanted`.
+pub(super) fn manifold_if(
+    s: &mut Scratch,
+    [a, b]: [&Placed; 2],
+    (reach, size): (f64, f64),
+    wanted: impl Fn(&Nearest) -> bool,
+    out: &mut Vec<Raw>,
+) {
     let from = out.len();
     let round = [a.solid.round, b.solid.round];
-    let Some(mut near) = s.search.nearest(a, b, reach + round[0] + round[1]) else { return };
+    let found = s.search.nearest(a, b, reach + round[0] + round[1]);
+    let Some(mut near) = found.filter(wanted) else { return };
     s.features[0].of(a.solid, &a.frame, near.normal);
     s.features[1].of(b.solid, &b.frame, -near.normal);
     let tolerance = 1e-6 * size + 0.02 * (-near.distance).max(0.0);

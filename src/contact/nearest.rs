@@ -82,20 +82,28 @@ impl Search {
         let [p, q, n] = [p, q, n].map(|v| V3::new(v.x, v.y, v.z));
         let Some(n) = unit(n).filter(|_| (p.dot(p) + q.dot(q)).is_finite()) else {
             // Just touching, or too deep for parry: the best direction that can be found from outside.
-            let n = planes(a, b, of_faces(a, b, way), WIDEST);
+            let n = from_outside(a, b, way);
             let points = [a.support(n), b.support(-n)];
             return Some(Nearest { points, normal: n, distance: n.dot(points[1] - points[0]) });
         };
         let length = norm(q - p);
-        // The line between the points is the better normal where it has a length.
-        let n = if !deep && length > 1e-7 { (q - p) * (1.0 / length) } else { n };
-        let n = if deep && separation(a, b, -n) > separation(a, b, n) { -n } else { n };
-        // Where they just touch, the search has no direction: then that of a face may be the right one.
+        let other = if deep { -n } else { unit(q - p).unwrap_or(n) };
+        // The line between the points is the better normal where it has a length, and is no more than rounding where it has next
+        // to none: what separates better counts.
+        let n = if separation(a, b, other) > separation(a, b, n) { other } else { n };
+        // Where they just touch, the search has no direction, and where they overlap it may have stopped at another one than the
+        // best: then one from outside may be the right one.
         let said = if deep { n.dot(q - p) } else { length };
-        let doubtful = separation(a, b, n) < said - 1e-6 * (said.abs() + 1e-3);
-        let n = if doubtful { planes(a, b, of_faces(a, b, n), WIDEST) } else { n };
+        let proven = separation(a, b, n);
+        let doubtful = proven < said - 1e-6 * (said.abs() + 1e-3) || proven < -DEEP * width(a, n).min(width(b, n));
+        let n = if doubtful { from_outside(a, b, n) } else { n };
         Some(Nearest { points: [p, q], normal: n, distance: 0.0 }.along(a, b, n))
     }
+}
+
+/// How wide a core is along a unit vector, m.
+fn width(a: &Placed, n: V3<f64>) -> f64 {
+    n.dot(a.support(n) - a.support(-n))
 }
 
 impl Nearest {
@@ -119,19 +127,27 @@ impl Nearest {
     }
 }
 
-/// The direction among `n` and the normals of all faces that separates best.
-fn of_faces(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
+/// Overlaps of more than this share of the thinner core's width are looked at from other sides, too.
+const DEEP: f64 = 0.02;
+
+/// The best direction near the best one among `n`, the normals of all faces, and directions all around.
+fn from_outside(a: &Placed, b: &Placed, n: V3<f64>) -> V3<f64> {
     let mut best = (separation(a, b, n), n);
+    let mut hear = |n: V3<f64>| {
+        let s = separation(a, b, n);
+        if s > best.0 {
+            best = (s, n);
+        }
+    };
     for (side, placed) in [a, b].into_iter().enumerate() {
-        placed.solid.face_normals(|outward| {
-            let n = placed.frame.r.mv(outward) * if side == 0 { 1.0 } else { -1.0 };
-            let s = separation(a, b, n);
-            if s > best.0 {
-                best = (s, n);
-            }
-        });
+        let sense = if side == 0 { 1.0 } else { -1.0 };
+        placed.solid.face_normals(|outward| hear(placed.frame.r.mv(outward) * sense));
     }
-    best.1
+    for i in 0..27 {
+        let digit = |k: i32| f64::from(i / k % 3 - 1);
+        unit(V3::new(digit(1), digit(3), digit(9))).into_iter().for_each(&mut hear);
+    }
+    planes(a, b, best.1, WIDEST)
 }
 
 /// Rounds of Newton's method: it starts at about 1e-4 and doubles its digits.

@@ -3,8 +3,8 @@
 //! Each triangle near the shape is a convex shape of its own; what it says counts only if the direction from its point to
 //! the shape belongs to that corner, edge or face of the *surface*: a ball that rolls over a flat floor meets no edges.
 
-use super::manifold::{Scratch, manifold};
-use super::nearest::Placed;
+use super::manifold::{Scratch, manifold_if};
+use super::nearest::{Nearest, Placed};
 use super::raw::{Raw, reduce};
 use super::solid::{Kind, Solid};
 use super::vector::{Frame, norm, unit};
@@ -34,6 +34,8 @@ pub(super) struct Surface {
 
 /// Sine up to which directions count as the same.
 const TILT: f64 = 1e-6;
+/// The same where the search has not been made better yet, or where a direction only tells who answers for a place.
+const LOOSE: f64 = 0.05;
 
 impl Surface {
     /// Without the triangles that have no area.
@@ -109,9 +111,10 @@ impl Surface {
         }
     }
 
-    /// Does the surface meet the direction `n` at the point `p` of this triangle? (All in the surface's frame.)
-    fn owns(&self, t: usize, p: V3<f64>, n: V3<f64>) -> bool {
-        if self.normals[t].dot(n) > 1.0 - 0.5 * TILT * TILT {
+    /// Does the surface meet the direction `n` at the point `p` of this triangle, up to the sine `tilt`? (All in the surface's
+    /// frame.)
+    fn owns(&self, t: usize, (p, n): (V3<f64>, V3<f64>), tilt: f64) -> bool {
+        if self.normals[t].dot(n) > 1.0 - 0.5 * tilt * tilt {
             return true;
         }
         let c = &self.corners[t];
@@ -120,17 +123,34 @@ impl Surface {
         if let Some(k) = (0..3).find(|k| norm(p - c[*k]) <= near) {
             let v = self.vertices[t][k] as usize;
             let beside = &self.around[self.starts[v] as usize..self.starts[v + 1] as usize];
-            return beside.iter().all(|w| w.dot(n) <= TILT);
+            return beside.iter().all(|w| w.dot(n) <= tilt);
         }
         let on_edge = |k: &usize| {
             let along = unit(c[(k + 1) % 3] - c[*k]);
             along.is_some_and(|u| norm((p - c[*k]).cross(u)) <= near)
         };
         match (0..3).find(on_edge) {
-            Some(k) => self.inward[t][k].is_none_or(|w| w.dot(n) <= TILT),
+            Some(k) => self.inward[t][k].is_none_or(|w| w.dot(n) <= tilt),
             // Inside the face, across it: only by rounding, or where it is overlapped.
             None => false,
         }
+    }
+
+    /// Whatever becomes of nearest points that were found at a distance: is another triangle nearer, or do they lie behind?
+    fn is_elsewhere(&self, t: usize, near: &Nearest) -> bool {
+        let (p, n) = (near.points[0], near.normal);
+        let up = self.normals[t].dot(n);
+        if up > 1.0 - 0.5 * LOOSE * LOOSE {
+            return false;
+        }
+        let c = &self.corners[t];
+        let close = 1e-3 * norm(c[1] - c[0]).max(norm(c[2] - c[0]));
+        let nearer = |k: usize| {
+            let at = |u: V3<f64>| norm((p - c[k]).cross(u)) <= close;
+            let there = unit(c[(k + 1) % 3] - c[k]).is_some_and(at);
+            there && self.inward[t][k].is_some_and(|w| w.dot(n) > LOOSE)
+        };
+        up < -LOOSE || (0..3).any(nearer)
     }
 }
 
@@ -168,7 +188,9 @@ pub(super) fn on_surface(s: &mut Scratch, q: &Query, (reach, size): (f64, f64), 
         let corners = q.surface.corners[t as usize];
         let triangle = Solid { kind: Kind::Triangle(corners), round: q.margin };
         let begin = out.len();
-        manifold(s, &Placed { solid: &triangle, frame: own }, &solid, (reach, size), out);
+        let flat = Placed { solid: &triangle, frame: own };
+        let wanted = |near: &Nearest| near.distance <= 1e-6 * size || !q.surface.is_elsewhere(t as usize, near);
+        manifold_if(s, [&flat, &solid], (reach, size), wanted, out);
         let mut kept = begin;
         for i in begin..out.len() {
             if let Some(raw) = judged(q, (t as usize, &solid), out[i]).filter(|raw| raw.gap < reach) {
@@ -192,8 +214,12 @@ fn judged(q: &Query, (t, solid): (usize, &Placed), raw: Raw) -> Option<Raw> {
     let n = raw.direction();
     let face = q.surface.normals[t];
     let foot = raw.core[0];
-    if face.dot(n) > 0.0 && q.surface.owns(t, foot, n) {
+    if face.dot(n) > 0.0 && q.surface.owns(t, (foot, n), TILT) {
         return Some(raw);
+    }
+    // Out at an edge of the surface, as on top of a wall: what lies beyond the edge answers for that.
+    if face.dot(n) < 1.0 - 0.5 * LOOSE * LOOSE && q.surface.owns(t, (foot, n), LOOSE) {
+        return None;
     }
     let overlap = raw.gap + raw.radius[0] + raw.radius[1] < 0.0;
     let corners = &q.surface.corners[t];

@@ -21,6 +21,8 @@ pub(super) enum Domain {
     Positive,
     NonNegative,
     Unit,
+    /// From 0.
+    UpTo(f64),
     AtLeast(f64),
     OneOf(&'static [f64]),
     /// A whole number between these two.
@@ -36,6 +38,7 @@ impl Domain {
             Self::Positive => x > 0.0,
             Self::NonNegative => x >= 0.0,
             Self::Unit => (0.0..=1.0).contains(&x),
+            Self::UpTo(most) => (0.0..=most).contains(&x),
             Self::AtLeast(least) => x >= least,
             Self::OneOf(list) => list.contains(&x),
             Self::Whole(least, most) => x.fract() == 0.0 && (f64::from(least)..=f64::from(most)).contains(&x),
@@ -50,6 +53,7 @@ impl Domain {
             Self::Positive => "greater than 0".into(),
             Self::NonNegative => "0 or greater".into(),
             Self::Unit => "from 0 to 1".into(),
+            Self::UpTo(most) => format!("from 0 to {most}"),
             Self::AtLeast(least) => format!("at least {least}"),
             Self::Whole(least, most) => format!("a whole number from {least} to {most}"),
             Self::Exponent => "a whole number with at most two digits".into(),

@@ -133,6 +133,9 @@ pub struct Inertial {
     pub inertia: [f64; 6],
 }
 
+/// Greatest coefficient of friction, of rolling (m) and of spinning friction (m): as good as stuck, and pairs are far from overflow.
+pub const MOST_FRICTION: f64 = 1e6;
+
 /// `<surface>` (B-8); `None` = not given, the scene's default holds.
 #[derive(Clone, Debug)]
 pub struct Surface {

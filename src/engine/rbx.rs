@@ -229,6 +229,8 @@ pub struct StepReport {
     pub guarded_energy: f64,
     /// Energy that contacts would have made out of the error of the step, and that was taken out of speeds and heights, J.
     pub trimmed_energy: f64,
+    /// Bounces were made smaller, because together with friction they would have made energy.
+    pub tempered: bool,
     /// What the rows of contacts were left with at most, m/s.
     pub residual: f64,
     /// A 3DOF group was at its pole.
@@ -313,6 +315,7 @@ impl Rbx {
         self.before.copy_from(&self.state);
         self.whole_step = s.h;
         self.axes.open_books();
+        let tempered = self.axes.tempered();
         let explicit = s.integrator == Integrator::Rk4;
         if !(explicit && self.rk4(m, commands, s, &mut report)) {
             report.fell_back = explicit;
@@ -332,6 +335,7 @@ impl Rbx {
             report.diverged = true;
         }
         report.residual = self.axes.residual();
+        report.tempered = self.axes.tempered() > tempered;
         self.observe(m, s);
         report
     }

@@ -131,6 +131,8 @@ impl Diagnostics {
             pair("guarded pieces", latest.stats.guarded_pieces),
             pair("guarded energy [J]", latest.stats.guarded_energy),
             pair("trimmed energy [J]", latest.stats.trimmed_energy),
+            pair("tempered steps", latest.stats.tempered_steps),
+            pair("worst residual of contacts [m/s]", latest.stats.worst_residual),
             pair("pole steps", latest.stats.pole_steps),
             pair("contacts", latest.contacts),
             pair("worst penetration [m]", latest.stats.worst_penetration),

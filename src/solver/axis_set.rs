@@ -430,6 +430,11 @@ impl AxisSet {
         self.contacts().map_or(0.0, |c| if c.is_empty() { 0.0 } else { c.residual })
     }
 
+    /// Passes so far whose bounces were made smaller.
+    pub fn tempered(&self) -> u64 {
+        self.contacts().map_or(0, |c| c.tempered)
+    }
+
     /// All contacts, if anything can touch.
     pub fn contacts(&self) -> Option<&Contacts> {
         self.couplings.as_ref().and_then(|c| c.contacts())

@@ -243,6 +243,7 @@ impl Contacts {
                 axes: axes(placed.normal),
                 middle_speed: 0.0,
                 floor: 0.0,
+                closes: None,
                 bounce: None,
                 free: 0.0,
                 block: 0,

@@ -44,6 +44,8 @@ pub struct Stats {
     pub worst_stop_violation: f64,
     /// Energy that steps in contact would have made out of nothing, and that was taken out of speeds and heights, J.
     pub trimmed_energy: f64,
+    /// Steps whose bounces were made smaller, because together with friction they would have made energy.
+    pub tempered_steps: u64,
     /// What the rows of contacts were left with at the end of a step at most: how far a velocity is from where Coulomb's law
     /// wants it, m/s.
     pub worst_residual: f64,
@@ -239,6 +241,7 @@ impl World {
         s.guarded_energy += report.guarded_energy;
         s.worst_residual = s.worst_residual.max(report.residual);
         s.trimmed_energy += report.trimmed_energy;
+        s.tempered_steps += u64::from(report.tempered);
         s.worst_stop_violation = self.engine.worst_stop();
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);

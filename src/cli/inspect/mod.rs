@@ -10,7 +10,7 @@ use super::args::InspectArgs;
 use super::base_by_name;
 use super::drawing::draw_robot;
 use super::load::{Loaded, load_or_say};
-use super::scene::{Fault, Scene, Spare, assemble};
+use super::scene::{Fault, Scene, assemble};
 use crate::model::Model;
 use std::process::ExitCode;
 pub use values::Unit;
@@ -60,7 +60,7 @@ fn read(args: &InspectArgs) -> Result<(Loaded, Option<Model>), ExitCode> {
         scene.lay_ground();
     }
     let stand = (scene.base.unwrap_or(base_by_name(&args.base)), scene.robot.pose);
-    match assemble(&scene, source, stand, Spare::Humanoid, &|m| scene.switch_effects(m)) {
+    match assemble(&scene, source, stand, scene.spare(), &|m| scene.switch_effects(m)) {
         Ok(all) => Ok((all.first, Some(all.model))),
         Err(Fault::Robot(report)) => Err(said(1, &report)),
         Err(Fault::Scene(reason)) => Err(said(2, &reason)),

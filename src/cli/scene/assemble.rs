@@ -7,9 +7,12 @@ use crate::cli::check::read_text;
 use crate::cli::load::{Examined, Loaded, Setup, Source, examine_text, loaded};
 use crate::description::{Finding, Severity};
 use crate::engine::State;
-use crate::math::{Pose, Vec3};
+use crate::math::{Mat3, Pose, Vec3};
 use crate::model::{Base, EFFECT_NAMES, Model};
 use std::path::{Path, PathBuf};
+
+/// Least radius of gyration of a body, m.
+const THINNEST: f64 = 1e-7;
 
 /// A scene without a robot still has something that robots and bodies can join.
 const NOBODY: &str = r#"<robot name="scene"><link name="stand"/></robot>"#;
@@ -66,14 +69,19 @@ pub fn assemble(
             Ok(examine_text(("scene", NOBODY), source.packages, setup))
         }
         None if spare == Spare::Nobody => {
-            return Err(Fault::Scene("name a URDF file, or a scene that names one (robot: urdf:)".into()));
+            let reason = "nothing to simulate: name a URDF file, or a scene with a robot (robot: urdf:) or with bodies";
+            return Err(shown(reason.into()));
         }
         _ => crate::cli::load::examine_with(Source { urdf, ..source }, setup),
     };
-    let first = loaded(examined.map_err(Fault::Robot)?).map_err(Fault::Robot)?;
+    let examined = examined.map_err(|reason| match source.urdf {
+        None if scene.robot.urdf.is_some() => Fault::Robot(scene.told(format!("{}: {reason}", scene.robot.place))),
+        _ => Fault::Robot(reason),
+    })?;
+    let first = loaded(examined).map_err(Fault::Robot)?;
     let mut model = Model::clone(&first.model);
     switch(&mut model).map_err(Fault::Scene)?;
-    let initial = start(&scene.robot, &model, pose).map_err(|r| shown(format!("robot: {r}")))?;
+    let initial = start(&scene.robot, &model, pose).map_err(|r| shown(format!("{}: {r}", scene.robot.place)))?;
     let mut all = Union { initial, model, warnings: vec![], switch };
     for robot in &scene.robots {
         all.robot(scene, robot, source).map_err(shown)?;
@@ -132,6 +140,10 @@ impl Union<'_> {
         if let Some(mass) = body.mass {
             (model, examined) = read(mass / model.mass())?;
         }
+        if let Some(hollow) = examined.findings.iter().find(|f| f.code == "does-not-collide") {
+            return Err(told(format!("{} ({})", hollow.message, "a body needs a shape that can be read")));
+        }
+        spread(&model).map_err(told)?;
         self.warn(&body.place, &examined.findings);
         let state = thrown(body, &model);
         self.join(model, &state, &body.name).map_err(told)
@@ -163,6 +175,22 @@ fn said(findings: &[Finding], least: Severity) -> Vec<String> {
 fn start(robot: &RobotEntry, m: &Model, pose: Pose) -> Result<State, String> {
     let set: Vec<(&str, f64)> = robot.set.iter().map(|(name, x)| (name.as_str(), *x)).collect();
     Start { pose, twist: robot.twist, set: &set }.state(m)
+}
+
+/// A body whose mass lies on a line or in a point is as good as free to turn: contacts cannot be solved beside its mass.
+fn spread(m: &Model) -> Result<(), String> {
+    let Some(b) = m.bodies.get(1).filter(|b| b.mass > 0.0) else { return Ok(()) };
+    let (c, i) = (Vec3::from(b.mc) / b.mass, b.inertia);
+    let at_origin = Mat3::new(i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz);
+    let at_center = at_origin - (Mat3::identity() * c.norm_squared() - c * c.transpose()) * b.mass;
+    let least = at_center.symmetric_eigenvalues().min();
+    if least >= THINNEST * THINNEST * b.mass {
+        return Ok(());
+    }
+    Err(format!(
+        "its inertia about an axis is {least:e} kg·m², for {:e} kg: a radius of gyration below {THINNEST} m; give it more",
+        b.mass
+    ))
 }
 
 /// A body with its velocities (B-8 B … D).

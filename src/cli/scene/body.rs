@@ -1,6 +1,7 @@
 //! A body of a scene as a robot of one link: its shapes and checks are those of a URDF.
 
 use super::file::Body;
+use super::limits::within;
 use super::pose;
 use crate::math::{Pose, Vec3};
 use serde_json::{Map, Value};
@@ -45,9 +46,8 @@ impl BodyEntry {
         let specific_gravity = weight(b)?;
         let fixed = b.fixed || b.specific_gravity == Some(0.0);
         let velocity = (Vec3::from(b.velocity.unwrap_or_default()), Vec3::from(b.angular_velocity.unwrap_or_default()));
-        if !velocity.0.iter().chain(velocity.1.iter()).all(|x| x.is_finite()) {
-            return Err("velocities must be finite numbers".into());
-        }
+        within("velocity", "m/s", velocity.0.as_slice())?;
+        within("angular_velocity", "rad/s", velocity.1.as_slice())?;
         if fixed && (velocity.0 != Vec3::zeros() || velocity.1 != Vec3::zeros()) {
             return Err("a static body has no velocity; leave it out".into());
         }
@@ -149,8 +149,11 @@ fn attributes<'a>(given: impl Iterator<Item = (&'a String, &'a Value)>) -> Resul
 /// A value as it stands in XML; lists are separated by blanks.
 fn text(key: &str, value: &Value) -> Result<String, String> {
     match value {
-        Value::String(s) => Ok(s.clone()),
-        Value::Number(n) => Ok(n.to_string()),
+        Value::String(s) => {
+            let numbers: Vec<f64> = s.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+            within(key, "", &numbers).map(|()| s.clone())
+        }
+        Value::Number(n) => within(key, "", &[n.as_f64().unwrap_or_default()]).map(|()| n.to_string()),
         Value::Bool(b) => Ok(b.to_string()),
         Value::Array(list) => {
             let parts: Result<Vec<String>, String> = list.iter().map(|v| text(key, v)).collect();

@@ -13,11 +13,9 @@ pub(super) struct SceneFile {
     /// Version of the format: 1.
     pub version: u32,
     /// World settings.
-    #[serde(default)]
-    pub world: WorldSettings,
+    pub world: Option<Spanned<WorldSettings>>,
     /// The first robot, the one of the command line.
-    #[serde(default)]
-    pub robot: Robot,
+    pub robot: Option<Spanned<Robot>>,
     /// Further robots.
     #[serde(default)]
     pub robots: Vec<Spanned<Robot>>,
@@ -27,8 +25,7 @@ pub(super) struct SceneFile {
     /// An infinite half-space.
     pub ground: Option<Spanned<Value>>,
     /// Surfaces where nothing says otherwise.
-    #[serde(default)]
-    pub defaults: Defaults,
+    pub defaults: Option<Spanned<Defaults>>,
 }
 
 /// `world:`; what is absent keeps its default.

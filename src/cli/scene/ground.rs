@@ -1,7 +1,9 @@
 //! The ground, and what surfaces are like where nothing says otherwise.
 
 use super::file::{Ground, SurfaceValues};
+use super::limits::{plain, shown, within};
 use crate::contact::Defaults;
+use crate::description::MOST_FRICTION;
 use crate::math::{Pose, Quat, Vec3};
 use crate::model::{Collider, Surface};
 use crate::shape::ContactForm;
@@ -17,7 +19,7 @@ const GROUND: &str = "ground";
 /// # Errors
 /// Names the value that is out of range.
 pub(super) fn defaults(values: &SurfaceValues) -> Result<Defaults, String> {
-    check(values).map_err(|reason| format!("defaults: surface: {reason}"))?;
+    check(values)?;
     Ok(over(Defaults::default(), values))
 }
 
@@ -35,16 +37,16 @@ fn over(defaults: Defaults, own: &SurfaceValues) -> Defaults {
 
 fn check(v: &SurfaceValues) -> Result<(), String> {
     let ranged = [
-        ("friction", v.friction, f64::INFINITY),
-        ("rolling_friction", v.rolling_friction, f64::INFINITY),
-        ("spinning_friction", v.spinning_friction, f64::INFINITY),
+        ("friction", v.friction, MOST_FRICTION),
+        ("rolling_friction", v.rolling_friction, MOST_FRICTION),
+        ("spinning_friction", v.spinning_friction, MOST_FRICTION),
         ("restitution", v.restitution, 1.0),
         ("margin", v.margin, f64::INFINITY),
     ];
     for (name, value, most) in ranged {
         if let Some(x) = value.filter(|x| !(x.is_finite() && *x >= 0.0 && *x <= most)) {
             let range = if most.is_finite() { format!("from 0 to {most}") } else { "0 or greater".into() };
-            return Err(format!("{name} is {x}; it must be {range}"));
+            return Err(format!("{name} is {}; it must be {range}", shown(x)));
         }
     }
     Ok(())
@@ -56,7 +58,7 @@ pub(super) fn ground(value: &Value, defaults: Defaults) -> Result<Option<Collide
         Value::Bool(false) => Ok(None),
         Value::Bool(true) | Value::Null => Ok(Some(flat(defaults))),
         Value::Object(_) => {
-            let given = Ground::deserialize(value).map_err(|e| e.to_string())?;
+            let given = Ground::deserialize(value).map_err(|e| plain(&e.to_string()))?;
             laid(&given, defaults).map(Some)
         }
         other => Err(format!("{other}: must be true, false, or what the ground is like")),
@@ -81,6 +83,7 @@ fn laid(g: &Ground, defaults: Defaults) -> Result<Collider, String> {
     let Defaults { surface, margin } = over(defaults, &own);
     let height = g.height.unwrap_or(0.0);
     let normal = g.normal.map_or(Vec3::z(), Vec3::from);
+    within("height", "m", &[height])?;
     if !(height.is_finite() && normal.norm().is_finite() && normal.norm() > 0.0) {
         return Err("height and normal must be finite, and the normal longer than 0".into());
     }

@@ -4,6 +4,7 @@ mod assemble;
 mod body;
 mod file;
 mod ground;
+mod limits;
 mod start;
 
 use crate::contact::Defaults;
@@ -14,9 +15,10 @@ pub use assemble::{Assembly, Fault, Spare, Switch, assemble, switch_effect};
 use body::BodyEntry;
 use file::{Robot, SceneFile, WorldSettings};
 use ground::ground;
+use limits::{plain, shown, within};
 use nalgebra::{Quaternion, Translation3};
-use serde_saphyr::Spanned;
-pub use start::{Start, couple, outside};
+use serde_saphyr::{Location, Spanned};
+pub use start::{Start, couple, inside, outside};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +31,8 @@ pub struct Scene {
     pub given: Vec<&'static str>,
     /// The first robot.
     pub robot: RobotEntry,
+    /// The file speaks of it.
+    has_robot: bool,
     /// How its root is held, if the scene says so.
     pub base: Option<Base>,
     /// Effects to switch, by name; every name exists.
@@ -70,7 +74,10 @@ impl Scene {
         };
         let text = super::check::read_text(path)?;
         let told = |reason: String| format!("{}: {reason}", path.display());
-        let file = serde_saphyr::from_str(&text).map_err(|e| told(e.to_string()))?;
+        if text.trim().is_empty() {
+            return Err(told("the file is empty; a scene begins with version: 1".into()));
+        }
+        let file = serde_saphyr::from_str(&text).map_err(|e| told(plain(&e.to_string())))?;
         Self::checked(file, path).map_err(told)
     }
 
@@ -78,30 +85,32 @@ impl Scene {
         if file.version != 1 {
             return Err(format!("version is {}; it must be 1", file.version));
         }
-        let settings = settings(&file.world)?;
-        if file.robot.name.is_some() {
-            return Err("robot: name: the first robot keeps its own names; names are for the entries of robots".into());
-        }
-        let (base, robot) =
-            (file.robot.base.as_deref().map(base).transpose()?, robot(file.robot, path, "robot".into())?);
-        if let Some(name) = file.world.effects.keys().find(|name| !EFFECT_NAMES.contains(&name.as_str())) {
-            return Err(format!("effect '{name}' does not exist; choose from: {}", EFFECT_NAMES.join(", ")));
-        }
-        let defaults = ground::defaults(&file.defaults.surface)?;
+        let world = or_nothing(file.world);
+        let settings = at_line(&world, "world", settings(&world.value))?;
+        let has_robot = file.robot.is_some();
+        let (base, robot) = first(or_nothing(file.robot), path)?;
+        let defaults = or_nothing(file.defaults);
+        let defaults = at_line(&defaults, "defaults: surface", ground::defaults(&defaults.value.surface))?;
         let ground = file.ground.map(|g| at_line(&g, "ground", ground(&g.value, defaults))).transpose()?.flatten();
         let robots: Result<Vec<_>, String> =
             (file.robots.into_iter().enumerate()).map(|(i, r)| further(i, r, path)).collect();
         let bodies: Result<Vec<_>, String> = (file.bodies.into_iter().enumerate()).map(|(i, b)| entry(i, b)).collect();
-        let (given, effects) = (given(&file.world), file.world.effects);
+        let (given, effects) = (given(&world.value), world.value.effects);
         let (robots, bodies, path) = (robots?, bodies?, path.to_owned());
         unique(robots.iter().map(|r| (&r.place, &r.name)).chain(bodies.iter().map(|b| (&b.place, &b.name))))?;
-        Ok(Self { settings, given, robot, base, effects, ground, robots, bodies, defaults, path })
+        Ok(Self { settings, given, robot, has_robot, base, effects, ground, robots, bodies, defaults, path })
     }
 
     /// The flat ground z = 0, if the scene has none of its own.
     pub fn lay_ground(&mut self) {
         let defaults = self.defaults;
         self.ground.get_or_insert_with(|| ground::flat(defaults));
+    }
+
+    /// Who stands in for a robot that neither the command line nor the scene names: nobody, where the scene does not speak of
+    /// one, but of something else.
+    pub fn spare(&self) -> Spare {
+        if self.has_company() && !self.has_robot { Spare::Nobody } else { Spare::Humanoid }
     }
 
     /// True if there is more in the scene than the first robot.
@@ -141,6 +150,11 @@ fn unique<'a>(names: impl Iterator<Item = (&'a String, &'a String)>) -> Result<(
     Ok(())
 }
 
+/// What is absent says nothing, nowhere.
+fn or_nothing<T: Default>(entry: Option<Spanned<T>>) -> Spanned<T> {
+    entry.unwrap_or_else(|| Spanned::new(T::default(), Location::UNKNOWN, Location::UNKNOWN))
+}
+
 /// Where an entry of a list stands.
 fn stands<T>(list: &str, index: usize, entry: &Spanned<T>, name: &str) -> String {
     format!("line {}: {list}[{index}] '{name}'", entry.defined.line())
@@ -148,6 +162,20 @@ fn stands<T>(list: &str, index: usize, entry: &Spanned<T>, name: &str) -> String
 
 fn at_line<T, R>(entry: &Spanned<T>, key: &str, result: Result<R, String>) -> Result<R, String> {
     result.map_err(|reason| format!("line {}: {key}: {reason}", entry.defined.line()))
+}
+
+/// The first robot, and how its root is held if the scene says so.
+fn first(entry: Spanned<Robot>, path: &Path) -> Result<(Option<Base>, RobotEntry), String> {
+    let place = match entry.defined {
+        Location::UNKNOWN => "robot".into(),
+        defined => format!("line {}: robot", defined.line()),
+    };
+    if entry.value.name.is_some() {
+        return Err(format!("{place}: name: the first robot keeps its own names; names are for the entries of robots"));
+    }
+    let told = |reason: String| format!("{place}: {reason}");
+    let base = entry.value.base.as_deref().map(base).transpose().map_err(told)?;
+    Ok((base, robot(entry.value, path, place)?))
 }
 
 fn further(index: usize, entry: Spanned<Robot>, path: &Path) -> Result<RobotEntry, String> {
@@ -168,15 +196,17 @@ fn robot(r: Robot, path: &Path, place: String) -> Result<RobotEntry, String> {
     let told = |reason: String| format!("{place}: {reason}");
     let base = r.base.as_deref().map(base).transpose().map_err(told)?.unwrap_or(Base::Fixed);
     let pose = r.pose.map_or(Ok(Pose::identity()), pose).map_err(|reason| told(format!("pose: {reason}")))?;
-    if let Some(x) = r.twist.iter().flatten().chain(r.set.values()).find(|x| !x.is_finite()) {
-        return Err(told(format!("{x} is not a finite number")));
-    }
+    within("twist", "m/s or rad/s", r.twist.as_ref().map_or(&[], |t| t)).map_err(told)?;
+    r.set.iter().try_for_each(|(axis, x)| within(&format!("set: {axis}"), "", &[*x])).map_err(told)?;
     let beside = |urdf: PathBuf| path.parent().unwrap_or(Path::new("")).join(urdf);
     let (name, urdf) = (r.name.unwrap_or_default(), r.urdf.map(beside));
     Ok(RobotEntry { place, name, urdf, base, pose, twist: r.twist, set: r.set })
 }
 
 fn settings(w: &WorldSettings) -> Result<Settings, String> {
+    if let Some(name) = w.effects.keys().find(|name| !EFFECT_NAMES.contains(&name.as_str())) {
+        return Err(format!("effect '{name}' does not exist; choose from: {}", EFFECT_NAMES.join(", ")));
+    }
     let mut s = Settings::default();
     if let Some(t) = w.control_interval {
         s.control_interval_ns = interval_ns(t)?;
@@ -203,14 +233,15 @@ fn base(name: &str) -> Result<Base, String> {
 /// A pose from x, y, z, qx, qy, qz, qw.
 ///
 /// # Errors
-/// If a number is not finite, or the quaternion's length is not 1 within 0.001.
+/// If a number is not finite, a place too far away, or the quaternion's length is not 1 within 0.001.
 pub fn pose(p: [f64; 7]) -> Result<Pose, String> {
+    within("the place", "m", &p[..3])?;
     if let Some(x) = p.iter().find(|x| !x.is_finite()) {
         return Err(format!("{x} is not a finite number"));
     }
     let q = Quaternion::new(p[6], p[3], p[4], p[5]);
     if (q.norm() - 1.0).abs() > 1e-3 {
-        return Err(format!("the quaternion's length is {}; it must be 1", q.norm()));
+        return Err(format!("the quaternion's length is {}; it must be 1", shown(q.norm())));
     }
     Ok(Pose::from_parts(Translation3::new(p[0], p[1], p[2]), Quat::from_quaternion(q)))
 }
@@ -218,12 +249,12 @@ pub fn pose(p: [f64; 7]) -> Result<Pose, String> {
 /// A control interval in whole nanoseconds.
 ///
 /// # Errors
-/// If it is not a positive number.
+/// If it is out of range.
 pub fn interval_ns(seconds: f64) -> Result<i64, String> {
-    if seconds.is_finite() && seconds > 0.0 {
+    if (1e-6..=1.0).contains(&seconds) {
         Ok((seconds * 1e9).round() as i64)
     } else {
-        Err(format!("control_interval is {seconds} s; it must be from 0.000001 to 1 s"))
+        Err(format!("control_interval is {} s; it must be from 0.000001 to 1 s", shown(seconds)))
     }
 }
 

@@ -1,7 +1,9 @@
 //! Where a robot starts.
 
+use crate::contact::{Detector, OVERLAP};
+use crate::dynamics::{Kinematics, kinematics};
 use crate::engine::State;
-use crate::math::{Pose, Vec3};
+use crate::math::{Pose, V3, Vec3};
 use crate::model::{Base, Model};
 
 /// How a robot starts.
@@ -63,4 +65,40 @@ pub fn outside<'a>(m: &'a Model, s: &'a State) -> impl Iterator<Item = (usize, S
         (q < a.lower - slack || q > a.upper + slack)
             .then(|| (i, format!("axis '{}' starts at {q}, outside its range {} to {}", a.name, a.lower, a.upper)))
     })
+}
+
+/// At most so many pairs are told one by one.
+const TOLD: usize = 5;
+
+/// What starts inside something else, by more than [`OVERLAP`].
+pub fn inside(m: &Model, s: &State) -> Vec<String> {
+    let Some(mut detector) = Detector::new(m).filter(|_| m.effects.contact) else { return vec![] };
+    let mut k = Kinematics::new(m);
+    kinematics(m, &mut k, &s.q, &s.v);
+    // Where things are, not where they go.
+    k.v.iter_mut().chain(&mut k.w).for_each(|v| *v = V3::default());
+    let mut touches = vec![];
+    detector.find(&k, 0.0, &mut touches);
+    let mut pairs: Vec<([usize; 2], f64)> = vec![];
+    for (pair, depth) in touches.iter().map(|t| (t.pair.map(|c| c as usize), -t.placed(&k).gap)) {
+        match pairs.last_mut() {
+            _ if depth <= OVERLAP => {}
+            Some((known, most)) if *known == pair => *most = most.max(depth),
+            _ => pairs.push((pair, depth)),
+        }
+    }
+    pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let name = |c: usize| &m.colliders[c].name;
+    let one = |([a, b], depth): &([usize; 2], f64)| {
+        format!(
+            "'{}' and '{}' start {:.3} mm inside each other: they come apart only as far as their motion pays for it; place \
+             them apart",
+            name(*a),
+            name(*b),
+            1e3 * depth
+        )
+    };
+    let more = pairs.len().saturating_sub(TOLD);
+    let rest = (more > 0).then(|| format!("{more} more pairs of shapes start inside each other, by less"));
+    pairs.iter().take(TOLD).map(one).chain(rest).collect()
 }

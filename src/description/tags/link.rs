@@ -3,10 +3,11 @@
 use super::super::element::{Domain, Element};
 use super::super::report::Report;
 use super::super::rules::{Attribute, Kind, Tag};
-use super::super::{Body, BodyDamping, Deactivate, MonitorFrame, PlacedShape, Surface};
+use super::super::{Body, BodyDamping, Deactivate, MOST_FRICTION, MonitorFrame, PlacedShape, Surface};
 use super::body::{self, DIMENSION, FLAT_SEGMENTS, LIMIT_SUBDIVISIONS, POLYGONISE, SEGMENTS, THICKNESS};
 
 const NON_NEGATIVE: Kind = Kind::Number(Domain::NonNegative);
+const FRICTION: Kind = Kind::Number(Domain::UpTo(MOST_FRICTION));
 const UNIT: Kind = Kind::Number(Domain::Unit);
 
 pub(in super::super) const BODY: Tag = Tag {
@@ -28,9 +29,9 @@ pub(in super::super) const BODY: Tag = Tag {
 pub(in super::super) const SURFACE: Tag = Tag {
     name: "surface",
     attributes: &[
-        Attribute::optional("friction", NON_NEGATIVE),
-        Attribute::optional("rolling_friction", NON_NEGATIVE),
-        Attribute::optional("spinning_friction", NON_NEGATIVE),
+        Attribute::optional("friction", FRICTION),
+        Attribute::optional("rolling_friction", FRICTION),
+        Attribute::optional("spinning_friction", FRICTION),
         Attribute::optional("restitution", UNIT),
         Attribute::optional("margin", NON_NEGATIVE),
     ],

@@ -24,6 +24,8 @@ pub(super) struct Point {
     pub(super) middle_speed: f64,
     /// Least normal velocity at the end of the step, m/s.
     pub(super) floor: f64,
+    /// When in the step it closes by itself and would bounce, s.
+    pub(super) closes: Option<f64>,
     /// Velocity and gap at the end of the step after a bounce, if it bounces.
     pub(super) bounce: Option<(f64, f64)>,
     /// Normal velocity at the end of the step without impulses of contacts, m/s.
@@ -147,20 +149,29 @@ impl Point {
         self.axes[n].dot(v)
     }
 
-    /// The bounce of a contact that closes within the step: it falls freely until then, leaves with `restitution` times the
-    /// speed that it has then, and is slowed down by the same acceleration for the rest of the step. So a bounce neither gains nor
-    /// loses by the step. False if it would come back within the step: then it rests.
-    pub(super) fn rebound(&mut self, rows: &mut Rows, h: f64) -> bool {
+    /// When within a step of `h` it closes, if it bounces then and does not come back within the step: else it rests.
+    pub(super) fn closes(&self, h: f64) -> Option<f64> {
+        let t = closing(self.gap, self.middle_speed, (self.free - self.middle_speed) / h).filter(|t| *t <= h)?;
+        (self.leaves(t, h).0 > 0.0).then_some(t)
+    }
+
+    /// Velocity and gap at the end of a step of `h` after a bounce at `t`: it falls freely until then, leaves with `restitution`
+    /// times the speed that it has then, and is slowed down by the same acceleration for the rest of the step. So a bounce neither
+    /// gains nor loses by the step.
+    fn leaves(&self, t: f64, h: f64) -> (f64, f64) {
         let (u, a) = (self.middle_speed, (self.free - self.middle_speed) / h);
-        let Some(t) = closing(self.gap, u, a).filter(|t| *t <= h) else { return false };
         let (leaves, rest) = (-self.surface.restitution * (u + a * t), h - t);
-        let speed = leaves + a * rest;
-        if speed <= 0.0 {
-            return false;
+        let there = (self.gap + (u + 0.5 * a * t) * t).max(0.0);
+        (leaves + a * rest, there + (leaves + 0.5 * a * rest) * rest)
+    }
+
+    /// Asks for the bounce at `t`; false if there is none then.
+    pub(super) fn rebound(&mut self, rows: &mut Rows, t: f64, h: f64) -> bool {
+        self.bounce = Some(self.leaves(t, h)).filter(|(speed, _)| *speed > 0.0);
+        if let Some((speed, _)) = self.bounce {
+            rows.row(self.block, 0).bias = self.free - speed;
         }
-        self.bounce = Some((speed, (leaves + 0.5 * a * rest) * rest));
-        rows.row(self.block, 0).bias = self.free - speed;
-        true
+        self.bounce.is_some()
     }
 
     pub(super) fn write(&self, rows: &mut Rows, x: &Impulse) {

@@ -76,13 +76,21 @@ impl Contacts {
         }
     }
 
-    /// After the first solve: contacts that bounce. True if there are any; then the rows are to be solved again.
+    /// After the first solve: contacts that bounce. True if there are any; then the rows are to be solved again. Two bodies bounce
+    /// once, when the first of their points closes: points that left at times of their own would turn the bodies against each
+    /// other as no velocity does.
     fn bounce(&mut self, rows: &mut Rows, h: f64) -> bool {
+        for point in self.points.iter_mut() {
+            let may = point.is_live() && point.surface.restitution > 0.0 && rows.impulse(point.block, 0) > 0.0;
+            (point.closes, point.bounce) = (if may { point.closes(h) } else { None }, None);
+        }
         let mut any = false;
-        for point in self.points.iter_mut().filter(|p| p.is_live()) {
-            point.bounce = None;
-            if point.surface.restitution > 0.0 && rows.impulse(point.block, 0) > 0.0 {
-                any |= point.rebound(rows, h);
+        for i in 0..self.points.len() {
+            if self.points[i].closes.is_some() {
+                let bodies = self.points[i].touch.bodies;
+                let same = self.points.iter().filter(|p| p.touch.bodies == bodies);
+                let first = same.filter_map(|p| p.closes).fold(h, f64::min);
+                any |= self.points[i].rebound(rows, first, h);
             }
         }
         any
