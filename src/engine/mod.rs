@@ -1,5 +1,6 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
+pub mod actuation;
 mod apart;
 mod breaking;
 mod coupled;
@@ -8,6 +9,7 @@ mod forest;
 mod guard;
 mod honour;
 mod kind;
+pub mod maximal;
 mod midpoint;
 mod paid;
 mod rbx;
