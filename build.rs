@@ -11,7 +11,7 @@ mod bullet {
     use std::path::Path;
 
     const ROOM: &str = "src/engine/bullet";
-    const SOURCES: [&str; 2] = ["shapes.cc", "world.cc"];
+    const SOURCES: [&str; 3] = ["shapes.cc", "solver.cc", "world.cc"];
     const HEADERS: [&str; 3] = ["shim.h", "shapes.h", "solver.h"];
 
     pub fn build() {

@@ -9,6 +9,8 @@ pub enum EngineKind {
     /// Ours: reduced coordinates, every row in one solver.
     #[default]
     Rbx,
+    /// The source's own: maximal coordinates, sequential impulses. In programs that were built with the feature `bullet`.
+    Bullet,
 }
 
 /// What an engine can do; what it cannot is told at load time.
@@ -23,11 +25,13 @@ impl EngineKind {
     pub fn capabilities(self) -> Capabilities {
         match self {
             Self::Rbx => Capabilities { exact_copy: true },
+            // Bullet has no copy of a world: impulses that it starts the contacts of the next step from are lost.
+            Self::Bullet => Capabilities { exact_copy: false },
         }
     }
 
     /// Names for `--engine` and the parameter `engine`.
-    pub const NAMES: [(&'static str, Self); 1] = [("rbx", Self::Rbx)];
+    pub const NAMES: [(&'static str, Self); 2] = [("rbx", Self::Rbx), ("bullet", Self::Bullet)];
 
     /// By name.
     pub fn by_name(name: &str) -> Option<Self> {
@@ -50,6 +54,10 @@ impl EngineKind {
                 engine.restart(m, state);
                 Ok(Box::new(engine))
             }
+            #[cfg(feature = "bullet")]
+            Self::Bullet => Ok(Box::new(super::bullet::Bullet::new(m, state)?)),
+            #[cfg(not(feature = "bullet"))]
+            Self::Bullet => Err(NO_BULLET.into()),
         }
     }
 
@@ -60,6 +68,12 @@ impl EngineKind {
     pub fn available(self) -> Result<(), String> {
         match self {
             Self::Rbx => Ok(()),
+            Self::Bullet if cfg!(feature = "bullet") => Ok(()),
+            Self::Bullet => Err(NO_BULLET.into()),
         }
     }
 }
+
+/// How to get it.
+const NO_BULLET: &str = "this program was built without the engine bullet; to have it: apt install libbullet-dev, then \
+                         cargo build --release --features bullet";

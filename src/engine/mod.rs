@@ -3,6 +3,8 @@
 pub mod actuation;
 mod apart;
 mod breaking;
+#[cfg(feature = "bullet")]
+pub mod bullet;
 mod coupled;
 mod euler;
 mod forest;

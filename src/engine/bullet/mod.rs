@@ -10,6 +10,7 @@ mod turns;
 
 use super::actuation::{Actuation, Start};
 use super::maximal::{carry, read_state};
+use super::sleep::same;
 use super::{Engine, EngineKind, Integrator, State, StepReport, StepSettings};
 use crate::dynamics::{Kinematics, kinematics};
 use crate::math::{M3, V3, Vec3};
@@ -32,6 +33,8 @@ pub struct Bullet {
     before: State,
     /// As Bullet has the bodies: joints may gape.
     k: Kinematics,
+    /// Of the last step.
+    commands: Vec<AxisCommand>,
     bodies: Vec<Moving>,
     inputs: Vec<MotorInput>,
     given: Vec<f64>,
@@ -69,6 +72,7 @@ impl Bullet {
             state: state.clone(),
             before: state.clone(),
             k: Kinematics::new(m),
+            commands: Vec::with_capacity(m.axes.len()),
             bodies: vec![],
             inputs: vec![],
             given: vec![],
@@ -132,12 +136,15 @@ impl Bullet {
         }
     }
 
-    /// What a row of Bullet's counts of a unit of an axis: it goes along the unit vector of the axis' gradient.
+    /// What a row of Bullet's counts of a unit of an axis: it goes along the unit vector of the axis' gradient; along its
+    /// opposite, negative.
     fn scale(&self, m: &Model, axis: usize) -> f64 {
         match m.axes[axis].slot {
             AxisSlot::Euler { group, angle } => {
                 let g = self.actuation.gradient(group, angle);
-                g.dot(g).sqrt()
+                // Bullet's middle axis is z × x, which turns over where cos P changes its sign.
+                let over = angle == 1 && crate::math::sin_cos(self.before.angles[group][1]).1 < 0.0;
+                if over { -g.dot(g).sqrt() } else { g.dot(g).sqrt() }
             }
             _ => turns::scale(&self.plan.links, &m.axes[axis].slot, m, &self.state),
         }
@@ -148,10 +155,11 @@ impl Bullet {
             let Some(driven) = self.plan.axes[axis] else { continue };
             let (piece, scale) = (self.actuation.motor(axis, h), self.scale(m, axis));
             let [low, high] = self.actuation.stop(axis).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            let (sense, scale) = (driven.sense * scale.signum(), scale.abs());
             let soft = if piece.damping.is_finite() { 1.0 / (piece.damping * scale * scale) } else { 0.0 };
             self.inputs[driven.motor] = MotorInput {
-                torque: driven.sense * piece.torque * scale,
-                speed: driven.sense * piece.speed / scale,
+                torque: sense * piece.torque * scale,
+                speed: sense * piece.speed / scale,
                 cfm: if piece.damping > 0.0 { soft } else { 0.0 },
                 bound: if piece.damping > 0.0 { piece.bound * scale } else { 0.0 },
                 stop: if driven.sense > 0.0 { [low, high] } else { [-high, -low] },
@@ -245,6 +253,11 @@ impl Engine for Bullet {
     /// Bullet keeps its memory, but asks for more as contacts come.
     fn step(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings) -> StepReport {
         self.before.copy_from(&self.state);
+        if self.commands.len() != commands.len() || !self.commands.iter().zip(commands).all(|(a, b)| same(a, b)) {
+            self.commands.clear();
+            self.commands.extend_from_slice(commands);
+            self.wake(m);
+        }
         self.actuation.open_books();
         let start = Start { state: &self.before, commands, effects: s.effects, h: (s.h, s.h) };
         let at_pole = self.actuation.prepare(m, &start);
@@ -367,6 +380,7 @@ impl Engine for Bullet {
             state: self.state.clone(),
             before: self.before.clone(),
             k: self.k.clone(),
+            commands: self.commands.clone(),
             bodies: self.bodies.clone(),
             inputs: vec![],
             given: vec![],

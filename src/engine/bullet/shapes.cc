@@ -20,6 +20,9 @@ constexpr double MARGIN = 5e-4;
 // Share of a shape's least size that the margin may take.
 constexpr double THIN = 0.1;
 
+// Triangles nearer than this are looked at, m.
+constexpr double REACH = 2e-3;
+
 double margin_for(double least) { return std::min(MARGIN, THIN * least); }
 
 // An ellipse across the z axis.
@@ -44,6 +47,12 @@ public:
         for (int i = 0; i < n; i++) out[i] = localGetSupportingVertexWithoutMargin(d[i]);
     }
     void calculateLocalInertia(btScalar, btVector3& inertia) const override { inertia.setZero(); }
+    // Of a mesh Bullet looks only at triangles inside of the box: what is flat would be behind one before it is seen.
+    void getAabb(const btTransform& at, btVector3& low, btVector3& high) const override {
+        btConvexInternalShape::getAabb(at, low, high);
+        low -= btVector3(REACH, REACH, REACH);
+        high += btVector3(REACH, REACH, REACH);
+    }
     const char* getName() const override { return "Frustum"; }
 
 private:
@@ -124,7 +133,8 @@ std::pair<Ring, Ring> inside(const Ring& r, const Ring& t, double m) {
 
 std::unique_ptr<btCollisionShape> frustum(const Ring& base, const Ring& top, double margin) {
     const double least = std::min({base.x, base.y, top.z - base.z > 0 ? top.z - base.z : base.x});
-    const double m = margin > 0 ? margin : margin_for(least);
+    // A disc is as thick as its margin.
+    const double m = margin > 0 ? margin : (top.z > base.z ? 1 : 0.1) * margin_for(least);
     const auto rings = margin > 0 ? std::pair(base, top) : inside(base, top, m);
     auto shape = std::make_unique<Frustum>(rings.first, rings.second);
     shape->setMargin(m);

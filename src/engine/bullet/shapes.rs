@@ -3,7 +3,7 @@
 use super::bridge::{ShapeKind, ShapeSpec};
 use super::plan::{Seat, array, number};
 use crate::math::Pose;
-use crate::model::{Collider, LinkFrame, Model};
+use crate::model::{Collider, LinkFrame, Model, Surface};
 use crate::shape::ContactForm;
 
 /// One for each collider of the model, in its order.
@@ -33,13 +33,21 @@ fn spec(m: &Model, c: &Collider, bodies: &[Seat], index: &[Option<usize>]) -> Re
         numbers: vec![],
         triangles: vec![],
         margin: c.margin,
-        surface: [c.surface.friction, c.surface.rolling, c.surface.spinning, c.surface.restitution],
+        surface: surface(&c.surface),
     };
     shape(&c.form, &mut spec);
     if body != 0 && matches!(spec.kind, ShapeKind::Plane | ShapeKind::Mesh) {
         return Err(format!("'{}' moves, and a plane or a surface cannot: give it another shape", c.name));
     }
     Ok(spec)
+}
+
+/// Friction, rolling and spinning friction, restitution. Where nothing rolls with friction Bullet does not look at spinning
+/// friction either.
+fn surface(s: &Surface) -> [f64; 4] {
+    const LEAST: f64 = 1e-15;
+    let rolling = if s.spinning > 0.0 { s.rolling.max(LEAST) } else { s.rolling };
+    [s.friction, rolling, s.spinning, s.restitution]
 }
 
 fn shape(form: &ContactForm, spec: &mut ShapeSpec) {

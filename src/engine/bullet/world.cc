@@ -12,6 +12,7 @@
 #include "btBulletDynamicsCommon.h"
 #include "realnoid/src/engine/bullet/bridge.rs.h"
 #include "shapes.h"
+#include "LinearMath/btTransformUtil.h"
 #include "solver.h"
 
 namespace realnoid::bullet {
@@ -129,6 +130,7 @@ struct World::Impl {
     std::unique_ptr<btGeneric6DofSpring2Constraint> constraint(const JointSpec& spec);
     void drive(Drive& drive, const MotorInput& input);
     void fall_asleep();
+    void drift(double time);
 };
 
 World::Impl::~Impl() {
@@ -145,6 +147,9 @@ void World::Impl::configure() {
     info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS;
     info.m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
     info.m_jointFeedbackInWorldSpace = true;
+    // Bodies are moved out of each other without getting speed, however little they overlap.
+    info.m_splitImpulse = true;
+    info.m_splitImpulsePenetrationThreshold = 0;
     world.getPairCache()->setOverlapFilterCallback(&filter);
     world.setForceUpdateAllAabbs(false);
 }
@@ -262,6 +267,7 @@ void World::Impl::add_joint(const JointSpec& s, btJointFeedback& fb) {
         c->setParam(BT_CONSTRAINT_STOP_ERP, s.erp[i], i);
         c->setParam(BT_CONSTRAINT_STOP_CFM, s.cfm[i], i);
     }
+    c->setUserConstraintId(solver.remember());
     c->setJointFeedback(&fb);
     world.addConstraint(c.get(), false);
     joints.push_back(std::move(c));
@@ -271,6 +277,7 @@ void World::Impl::add_motor(const Spec& spec, const Motor& motor) {
     if (motor.joint >= spec.joints.size() || motor.dof >= 6) throw std::out_of_range("a motor is on a joint that is not there");
     Drive d{constraint(spec.joints[motor.joint]), int(motor.dof), motor.far ? joints[motor.joint].get() : nullptr};
     for (int i = 0; i < 6; i++) d.constraint->setLimit(i, 1, -1);
+    d.constraint->setUserConstraintId(solver.remember());
     d.constraint->enableFeedback(true);
     d.constraint->setEnabled(false);
     world.addConstraint(d.constraint.get(), false);
@@ -330,6 +337,20 @@ void World::Impl::fall_asleep() {
     }
 }
 
+// Where a body will be.
+btTransform ahead(const btRigidBody& b, double time) {
+    btTransform at;
+    btTransformUtil::integrateTransform(b.getWorldTransform(), b.getLinearVelocity(), b.getAngularVelocity(), time, at);
+    return at;
+}
+
+// Bullet moves a body by the velocity that it got from forces at the place where it was. That is of second order if the place is
+// half a step ahead of the velocity (leapfrog). So bodies are put that much ahead, and read that much behind.
+void World::Impl::drift(double time) {
+    if (time == 0) return;
+    for (auto& b : bodies) b->setCenterOfMassTransform(ahead(*b, time));
+}
+
 World::World(const Spec& spec) : impl_(std::make_unique<Impl>()) {
     Impl& w = *impl_;
     w.configure();
@@ -349,12 +370,16 @@ void World::step(const StepInput& in, rust::Slice<const MotorInput> motors, rust
     if (motors.size() != w.drives.size() || efforts.size() != w.drives.size() || bodies.size() != w.bodies.size())
         throw std::out_of_range("a step of another world");
     const btVector3 gravity = vec(in.gravity);
+    w.drift(0.5 * (in.h - w.h));
     w.h = in.h;
     btContactSolverInfo& info = w.world.getSolverInfo();
     info.m_numIterations = in.iterations;
     // What weight adds to a speed within a step does not bounce.
     info.m_restitutionVelocityThreshold = 2 * gravity.length() * in.h;
-    if (gravity != w.world.getGravity()) w.world.setGravity(gravity);
+    if (gravity != w.world.getGravity()) {
+        wake();
+        w.world.setGravity(gravity);
+    }
     for (std::size_t i = 0; i < w.drives.size(); i++) w.drive(w.drives[i], motors[i]);
     w.world.stepSimulation(in.h, 0);
     w.fall_asleep();
@@ -364,8 +389,9 @@ void World::step(const StepInput& in, rust::Slice<const MotorInput> motors, rust
     }
     for (std::size_t i = 0; i < w.bodies.size(); i++) {
         const btRigidBody& b = *w.bodies[i];
-        const btVector3& p = b.getCenterOfMassPosition();
-        const btQuaternion q = b.getOrientation();
+        const btTransform at = ahead(b, -0.5 * in.h);
+        const btVector3& p = at.getOrigin();
+        const btQuaternion q = at.getRotation();
         bodies[i] = {{p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}, arr(b.getAngularVelocity()), arr(b.getLinearVelocity())};
     }
 }
