@@ -12,6 +12,7 @@ mod kind;
 pub mod maximal;
 mod midpoint;
 mod paid;
+mod rapier;
 mod rbx;
 mod rk4;
 mod seam;
@@ -19,7 +20,8 @@ mod sleep;
 
 pub use apart::come_apart;
 pub use breaking::{BreakWatch, Overload};
-pub use honour::not_honoured;
+pub use honour::{Shortfall, not_honoured, shortfalls};
 pub use kind::{Capabilities, EngineKind};
+pub use rapier::Rapier;
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};
 pub use seam::Engine;
