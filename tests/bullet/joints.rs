@@ -17,8 +17,7 @@ fn read_angles(m: &Model, s: &mut State) {
 
 /// Relative difference of the accelerations in a short step from the same state, with the same torques. It is the second step: an
 /// engine of positions and velocities learns from the first one how its joints turn the velocities.
-fn against_rbx(m: &Model, s: &State, commands: &[AxisCommand]) -> f64 {
-    let h = 1e-5;
+fn against_rbx(m: &Model, s: &State, commands: &[AxisCommand], h: f64) -> f64 {
     let step = StepSettings {
         h,
         gravity: [1.0, 2.0, -9.0],
@@ -39,8 +38,14 @@ fn against_rbx(m: &Model, s: &State, commands: &[AxisCommand]) -> f64 {
     a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max) / size
 }
 
-/// The frames, senses and scales of every kind of joint: the same torques accelerate as in rbx. What is left is of the order of
-/// the step: 1e-5 s at speeds of the order 10/s. Rounding of a pose, 1e-16 m, is corrected within 1e-5 s: 1e-7 m/s².
+/// Is it only the step that makes the difference? It is 0.1 at most at 10 µs, and half of that at 5 µs. Rounding of a pose,
+/// 1e-16 m, is corrected within a step: 1e-5 m/s².
+fn agrees(m: &Model, s: &State, commands: &[AxisCommand]) -> Result<(), String> {
+    let [whole, half] = [1e-5, 5e-6].map(|h| against_rbx(m, s, commands, h));
+    if whole < 0.1 && half < 0.55 * whole + 1e-5 { Ok(()) } else { Err(format!("{whole:e} at 10 µs, {half:e} at 5 µs")) }
+}
+
+/// The frames, senses and scales of every kind of joint: the same torques accelerate as in rbx.
 #[test]
 fn torques_accelerate_every_kind_of_joint_as_in_rbx() {
     let mut wrong = vec![];
@@ -57,9 +62,8 @@ fn torques_accelerate_every_kind_of_joint_as_in_rbx() {
         let mut s = State { q, v, angles: vec![[0.0; 3]; m.eulers.len()] };
         read_angles(&m, &mut s);
         let commands: Vec<_> = m.axes.iter().map(|_| AxisCommand::torque(5.0 * rng.unit())).collect();
-        let error = against_rbx(&m, &s, &commands);
-        if error > 1e-3 {
-            wrong.push(format!("{joints:?}, seed {seed}: {error:e}, {:?}", s.angles));
+        if let Err(error) = agrees(&m, &s, &commands) {
+            wrong.push(format!("{joints:?}, seed {seed}: {error}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -165,8 +169,7 @@ fn a_slide_stops_at_its_end() {
     let mut w = world(m.clone(), 1e-3);
     run(&mut w, 0.2);
     let (q, v) = w.state().axis(&m, 0);
-    // Semi-implicit Euler falls further by half a step's speed.
-    assert!((q - 0.5 * G * 0.04).abs() < 0.5 * G * 0.2 * 1e-3 * 1.01 && (v - G * 0.2).abs() < 1e-9, "{q} {v}");
+    assert!((q - 0.5 * G * 0.04).abs() < 1e-9 && (v - G * 0.2).abs() < 1e-9, "{q} {v}");
     run(&mut w, 2.0);
     assert!((w.state().axis(&m, 0).0 - 0.3).abs() < 1e-5, "{}", w.state().axis(&m, 0).0);
 }
@@ -264,8 +267,7 @@ fn hinges_without_mass_between_them_are_one_joint() {
             s.set_axis(&m, k, 0.3 + 0.4 * k as f64, 0.7 - 0.9 * k as f64);
         }
         let commands: Vec<_> = (0..axes.len()).map(|k| AxisCommand::torque(1.0 - 0.4 * k as f64)).collect();
-        let error = against_rbx(&m, &s, &commands);
-        assert!(error < 1e-3, "{axes:?}: {error:e}");
+        agrees(&m, &s, &commands).unwrap();
     }
 }
 

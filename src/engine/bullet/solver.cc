@@ -1,8 +1,13 @@
 #include "solver.h"
-#include <cstdlib>
-#include <cstdio>
 
 namespace realnoid::bullet {
+
+namespace {
+
+// An impulse that only a row of no effect could want, N·s.
+constexpr double NEVER = -1e30;
+
+}  // namespace
 
 Solver::Memory* Solver::memory(const btSolverConstraint& row) {
     const int id = static_cast<btTypedConstraint*>(row.m_originalContactPoint)->getUserConstraintId();
@@ -38,8 +43,7 @@ void Solver::convertJoints(btTypedConstraint** constraints, int count, const btC
         if (m.rows != n || m.h <= 0) return;
         for (int i = 0; i < n; i++) {
             btSolverConstraint& row = rows[first + i];
-            static double WJ = getenv("WJ") ? atof(getenv("WJ")) : 1, WM = getenv("WM") ? atof(getenv("WM")) : 1;
-            double impulse = m.impulse[i] * (info.m_timeStep / m.h) * (n == 1 ? WM : WJ);
+            double impulse = m.impulse[i] * (info.m_timeStep / m.h);
             impulse = btMin(btMax(impulse, row.m_lowerLimit), row.m_upperLimit);
             row.m_appliedImpulse = impulse;
             btSolverBody& a = m_tmpSolverBodyPool[row.m_solverBodyIdA];
@@ -56,15 +60,20 @@ void Solver::convertContacts(btPersistentManifold** manifolds, int count, const 
         btSolverConstraint& row = m_tmpSolverContactConstraintPool[i];
         const auto& p = *static_cast<btManifoldPoint*>(row.m_originalContactPoint);
         if (p.m_combinedRestitution <= 0) continue;
-        if (getenv("DBG") && p.getDistance() <= 0) fprintf(stderr, "hit %g rest %g rhs %g jac %g\n", p.getDistance(), p.m_combinedRestitution, row.m_rhs, row.m_jacDiagABInv);
-        if (p.getDistance() <= 0) continue;
         const btSolverBody& a = m_tmpSolverBodyPool[row.m_solverBodyIdA];
         const btSolverBody& b = m_tmpSolverBodyPool[row.m_solverBodyIdB];
         const double approach = -(row.m_contactNormal1.dot(a.m_linearVelocity) + row.m_relpos1CrossNormal.dot(a.m_angularVelocity) +
                                   row.m_contactNormal2.dot(b.m_linearVelocity) + row.m_relpos2CrossNormal.dot(b.m_angularVelocity));
         if (approach <= info.m_restitutionVelocityThreshold) continue;
-        if (getenv("DBG")) fprintf(stderr, "gap %g approach %g rest %g rhs %g\n", p.getDistance(), approach, p.m_combinedRestitution, row.m_rhs);
-        row.m_upperLimit = 0;
+        if (p.getDistance() > 0) {
+            // Not yet. Rows of contacts have no upper limit in Bullet.
+            row.m_rhs = NEVER;
+        } else if (row.m_rhsPenetration == 0) {
+            // The way out of each other is not to add to the rebound.
+            const double push = -p.getDistance() * info.m_erp2 / info.m_timeStep * row.m_jacDiagABInv;
+            row.m_rhs -= push;
+            row.m_rhsPenetration = push;
+        }
     }
 }
 

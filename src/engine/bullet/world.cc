@@ -89,6 +89,21 @@ struct Drive {
     btGeneric6DofSpring2Constraint* far = nullptr;
 };
 
+// A joint with a way along x. Bullet pushes the two sides perpendicular to it at the origins of their frames, which are apart by
+// the way: force against force makes a torque out of nothing. So the parent's frame goes along with the child's.
+struct Slide {
+    btGeneric6DofSpring2Constraint* constraint = nullptr;
+    btTransform in_parent, in_child;
+    double lower = 1, upper = -1;
+    void follow() const {
+        btGeneric6DofSpring2Constraint& c = *constraint;
+        const btVector3 child = (c.getRigidBodyB().getCenterOfMassTransform() * in_child).getOrigin();
+        const double way = (c.getRigidBodyA().getCenterOfMassTransform() * in_parent).invXform(child).x();
+        c.setFrames(in_parent * btTransform(btQuaternion::getIdentity(), btVector3(way, 0, 0)), in_child);
+        if (lower <= upper) c.setLimit(0, lower - way, upper - way);
+    }
+};
+
 struct Sleep {
     double after = -1;
     double slow = 0;
@@ -116,6 +131,7 @@ struct World::Impl {
     std::vector<std::unique_ptr<btRigidBody>> standing;
     std::vector<btJointFeedback> feedback;
     std::vector<std::unique_ptr<btGeneric6DofSpring2Constraint>> joints;
+    std::vector<Slide> slides;
     std::vector<Drive> drives;
     double h = 0;
 
@@ -147,9 +163,6 @@ void World::Impl::configure() {
     info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS;
     info.m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
     info.m_jointFeedbackInWorldSpace = true;
-    // Bodies are moved out of each other without getting speed, however little they overlap.
-    info.m_splitImpulse = true;
-    info.m_splitImpulsePenetrationThreshold = 0;
     world.getPairCache()->setOverlapFilterCallback(&filter);
     world.setForceUpdateAllAabbs(false);
 }
@@ -270,6 +283,8 @@ void World::Impl::add_joint(const JointSpec& s, btJointFeedback& fb) {
     c->setUserConstraintId(solver.remember());
     c->setJointFeedback(&fb);
     world.addConstraint(c.get(), false);
+    if (s.lower[0] != s.upper[0])
+        slides.push_back({c.get(), transform(s.frame_in_parent), transform(s.frame_in_child), s.lower[0], s.upper[0]});
     joints.push_back(std::move(c));
 }
 
@@ -380,6 +395,7 @@ void World::step(const StepInput& in, rust::Slice<const MotorInput> motors, rust
         wake();
         w.world.setGravity(gravity);
     }
+    for (const Slide& slide : w.slides) slide.follow();
     for (std::size_t i = 0; i < w.drives.size(); i++) w.drive(w.drives[i], motors[i]);
     w.world.stepSimulation(in.h, 0);
     w.fall_asleep();
