@@ -11,7 +11,7 @@
 use super::State;
 use crate::math::V3;
 use crate::model::{Axis, AxisSlot, DriveLimits, Effects, EulerRates, Model};
-use crate::solver::{AxisCommand, AxisInput, Brakes, FreeMobility, Law, Mode, Piece, Work};
+use crate::solver::{AxisCommand, AxisInput, Brakes, FreeMobility, Law, Mode, Piece, Reach, Work};
 
 /// Laws, pieces and books of all axes. Makes its memory once.
 #[derive(Clone, Debug)]
@@ -41,6 +41,8 @@ struct AxisState {
     /// In the last step, rad/s² or m/s².
     acceleration: f64,
     brakes: Brakes,
+    /// What the engine's iteration leaves of the speed of its riser is taken back by the motor of the next step, rad/s or m/s.
+    correction: f64,
     /// Inertia of the rotor that counts, kg·m² or kg.
     rotor: f64,
     /// Way to the lower (≤ 0 inside) and to the upper stop, if they are hard and in force.
@@ -71,6 +73,7 @@ impl Actuation {
             v: 0.0,
             acceleration: 0.0,
             brakes: Brakes::default(),
+            correction: 0.0,
             rotor: 0.0,
             stop: None,
         };
@@ -95,7 +98,8 @@ impl Actuation {
     /// Forgets what the axes did in the last step; the books go on.
     pub fn forget(&mut self) {
         for axis in &mut self.axes {
-            (axis.memory, axis.acceleration, axis.brakes) = (0, 0.0, Brakes::default());
+            (axis.memory, axis.acceleration, axis.correction) = (0, 0.0, 0.0);
+            axis.brakes = Brakes::default();
         }
     }
 
@@ -122,6 +126,7 @@ impl Actuation {
             *rates = group.rates(*angles);
             at_pole |= rates.at_pole;
         }
+        self.learn_mobilities(m, start);
         for (i, axis) in m.axes.iter().enumerate() {
             let at = &mut self.axes[i];
             (at.q, at.v) = start.state.axis(m, i);
@@ -142,21 +147,16 @@ impl Actuation {
                 (at.piece, at.stop, at.rotor) = (Piece::NONE, None, 0.0);
             }
         }
-        self.learn_mobilities(m, start);
         at_pole
     }
 
-    /// What servos know of their load, for the next step.
+    /// How each axis answers to a torque, for servos and for the choice of the pieces.
     fn learn_mobilities(&mut self, m: &Model, start: &Start) {
-        if !start.effects.drives || start.commands.iter().all(|c| c.mode != Mode::Servo) {
-            return;
-        }
         let q = &start.state.q;
-        self.mobility.refresh(m, q, self.axes.iter().map(|a| a.rotor));
+        let rotors = self.drives.iter().map(|d| if start.effects.rotor_inertia { d.rotor_inertia } else { 0.0 });
+        self.mobility.refresh(m, q, rotors);
         for (i, at) in self.axes.iter_mut().enumerate() {
-            if start.commands[i].mode == Mode::Servo {
-                at.brakes.mobility = self.mobility.of(m, q, &self.rates, i);
-            }
+            at.brakes.mobility = self.mobility.of(m, q, &self.rates, i);
         }
     }
 
@@ -165,8 +165,11 @@ impl Actuation {
         let at = &self.axes[axis];
         let (piece, inert) = (at.piece, at.rotor / h);
         match piece.riser {
-            _ if inert == 0.0 => piece,
-            Some(_) => Piece { torque: piece.torque - inert * (piece.speed - at.v), ..piece },
+            Some(_) => {
+                let (torque, speed) = (piece.torque - inert * (piece.speed - at.v), piece.speed + at.correction);
+                Piece { torque, speed, ..piece }
+            }
+            None if inert == 0.0 => piece,
             None => Piece { damping: piece.damping + inert, speed: at.v, bound: f64::INFINITY, ..piece },
         }
     }
@@ -194,8 +197,9 @@ impl Actuation {
                 None => at.piece.torque + motors[i],
             };
             let total = motor + at.rotor * at.acceleration;
-            let (effort, memory) = at.law.outcome(&at.piece, total, (v, mean));
+            let (effort, memory) = at.law.outcome(&at.piece, total, mean);
             at.memory = memory;
+            at.correction = if memory == 0 { 0.0 } else { at.correction + GAIN * (at.piece.speed - mean) };
             at.brakes.drift = at.acceleration - at.brakes.mobility * effort;
             self.effort[i] += effort * h / whole;
             self.work.drives += effort * way;
@@ -215,8 +219,9 @@ impl AxisState {
         // Hard stops are limits of the engine.
         let effects = Effects { limits: start.effects.limits && self.stop.is_none(), ..start.effects };
         self.law.set(&input, effects, start.h);
-        let ahead = self.v + AHEAD * self.acceleration * start.h.0;
-        self.piece = self.law.piece((self.v, ahead), self.memory, self.rotor == 0.0);
+        let h = start.h.0;
+        let reach = Reach { change: AHEAD * self.acceleration.abs() * h, per_torque: h * self.brakes.mobility };
+        self.piece = self.law.piece(self.v, &reach, self.memory, self.rotor == 0.0);
     }
 
     fn stuck(&self) -> bool {
@@ -224,6 +229,8 @@ impl AxisState {
     }
 }
 
+/// Share of what is left of a speed that the next step's motor takes back.
+const GAIN: f64 = 0.5;
 /// Steps within which the present acceleration must bring an axis to a riser so that it is looked for there.
 const AHEAD: f64 = 2.0;
 

@@ -37,5 +37,6 @@ pub use free_mobility::FreeMobility;
 pub use law::{AxisInput, Law};
 pub use lifts::{Lift, LiftKind};
 pub use piece::Piece;
+pub(crate) use piece::Reach;
 pub use rows::{FINISH_ROWS, Kind, Row, Rows, Solved};
 pub use soft::write_softs;

@@ -26,14 +26,23 @@ impl Piece {
     pub const NONE: Self = Self { torque: 0.0, speed: 0.0, damping: 0.0, bound: 0.0, riser: None };
 }
 
+/// How far the speed of an axis may change in a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reach {
+    /// As it did in the last steps, rad/s or m/s.
+    pub change: f64,
+    /// By another torque, per torque.
+    pub per_torque: f64,
+}
+
 impl Law {
-    /// The piece for a step from the speed `v` to about the speed `ahead`; `memory` is of what kinds the riser was that the axis
-    /// stood on, 0 if it slid; `level`: may a riser stand for the segments beside it, if they are level?
-    pub(crate) fn piece(&self, (v, ahead): (f64, f64), memory: u8, level: bool) -> Piece {
+    /// The piece for a step from the speed `v`; `memory` is of what kinds the riser was that the axis stood on, 0 if it slid;
+    /// `level`: may a riser stand for the segments beside it, if they are level?
+    pub(crate) fn piece(&self, v: f64, reach: &Reach, memory: u8, level: bool) -> Piece {
         let place = self.guess(v, memory);
         let between = |k: &usize| {
-            let speed = self.knots[*k].speed;
-            speed >= v.min(ahead) && speed <= v.max(ahead)
+            let (left, right) = self.held(*k);
+            (self.knots[*k].speed - v).abs() <= reach.change + reach.per_torque * (left - right)
         };
         let distance = |k: &usize| (self.knots[*k].speed - v).abs();
         let nearest =
@@ -71,12 +80,10 @@ impl Law {
         Piece { torque: self.on_segment(j, v), speed: v, damping, bound, riser: None }
     }
 
-    /// After a step that ended with the speed `v`, in which the piece and its motor gave `torque` on average: the torque of the
-    /// drive, and of what kinds the riser was that the axis stands on, 0 if it slides. `mean` is the mean speed in the step.
-    pub(crate) fn outcome(&self, piece: &Piece, torque: f64, (v, mean): (f64, f64)) -> (f64, u8) {
-        let stands =
-            |k: &usize| (v - piece.speed).abs() <= STANDS * (1.0 + piece.speed.abs()) && self.is_inside(*k, torque);
-        match piece.riser.filter(stands) {
+    /// After a step in which the piece and its motor gave `torque` on average: the torque of the drive, and of what kinds the riser
+    /// was that the axis stands on, 0 if it slides. `mean` is the mean speed in the step.
+    pub(crate) fn outcome(&self, piece: &Piece, torque: f64, mean: f64) -> (f64, u8) {
+        match piece.riser.filter(|k| self.is_inside(*k, torque)) {
             Some(k) => (self.drive_torque(piece.speed, Some((k, torque))), self.knots[k].kinds),
             None => (self.drive_torque(mean, None), 0),
         }
@@ -90,13 +97,13 @@ impl Law {
     /// Is this torque strictly between the ends of a riser?
     fn is_inside(&self, k: usize, torque: f64) -> bool {
         let (left, right) = self.held(k);
-        let slack = STANDS * (left - right).min(1.0);
+        let slack = BOUND * (left - right).min(1.0);
         torque < left - slack && torque > right + slack
     }
 }
 
-/// An axis this near to the speed of its riser, relative, stands on it: what an engine's iteration leaves.
-const STANDS: f64 = 1e-6;
+/// A motor this near to its bound, relative, is at it.
+const BOUND: f64 = 1e-9;
 
 #[cfg(test)]
 mod tests {
@@ -152,7 +159,7 @@ mod tests {
                 for k in -70..70 {
                     let v = 0.1 * f64::from(k) + 0.05;
                     for level in [true, false] {
-                        let piece = law.piece((v, v), 0, level);
+                        let piece = law.piece(v, &Reach::default(), 0, level);
                         let j = law.guess(v, 0) / 2;
                         let (is, should) = (torque(&piece, v), law.on_segment(j, v));
                         assert!((is - should).abs() < 1e-12, "{command:?} {v}: {is} {should} {piece:?}");
@@ -166,7 +173,7 @@ mod tests {
     #[test]
     fn a_riser_ahead_is_taken() {
         let law = law(&axis(), &DriveLimits::default(), AxisCommand::torque(2.0));
-        let piece = law.piece((0.01, -0.01), 0, false);
+        let piece = law.piece(0.01, &Reach { change: 0.02, per_torque: 0.0 }, 0, false);
         assert_eq!((piece.speed, piece.bound, piece.torque), (0.0, 0.5, 2.0));
         assert_eq!(piece.riser, Some(0));
     }
@@ -174,8 +181,8 @@ mod tests {
     #[test]
     fn standing_and_sliding_are_told_apart() {
         let law = law(&axis(), &DriveLimits::default(), AxisCommand::IDLE);
-        let piece = law.piece((0.0, 0.0), 0, false);
-        assert_eq!(law.outcome(&piece, 0.2, (0.0, 0.0)), (0.0, FRICTION));
-        assert_eq!(law.outcome(&piece, -0.5, (0.4, 0.2)).1, 0);
+        let piece = law.piece(0.0, &Reach::default(), 0, false);
+        assert_eq!(law.outcome(&piece, 0.2, 0.0), (0.0, FRICTION));
+        assert_eq!(law.outcome(&piece, -0.5, 0.2).1, 0);
     }
 }

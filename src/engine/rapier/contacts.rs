@@ -149,6 +149,17 @@ impl Contacts {
         }
     }
 
+    /// Energy that they took in a part of a step of `h` seconds between two poses, J: impulses along the mean of the relative
+    /// velocities at its ends, which is exact for impacts.
+    pub fn taken(&self, m: &Model, ends: [&Kinematics; 2], h: f64) -> f64 {
+        let done = self.points.iter().map(|p| {
+            let bodies = p.colliders.map(|c| place(m, &m.colliders[c]).0);
+            let apart = |k: &Kinematics| velocity(k, bodies[1], p.point) - velocity(k, bodies[0], p.point);
+            0.5 * h * p.force.dot(apart(ends[0]) + apart(ends[1]))
+        });
+        -done.sum::<f64>()
+    }
+
     /// Lets rolling and spinning friction turn the bodies: bounded by coefficient × normal force, and by what brings the turning
     /// to rest.
     pub fn roll(&mut self, m: &Model, sim: &mut Sim, parts: &Parts, (k, h): (&Kinematics, f64)) {
@@ -168,6 +179,12 @@ impl Contacts {
             }
         }
     }
+}
+
+/// Of a body at a point of the world, m/s.
+fn velocity(k: &Kinematics, body: usize, at: V3<f64>) -> V3<f64> {
+    let arm = k.r[body].tv(at - k.p[body]);
+    k.r[body].mv(k.w[body].cross_add(arm, k.v[body]))
 }
 
 /// Angular velocity in the world, rad/s.

@@ -75,8 +75,9 @@ fn seat(m: &Model, q: &[f64], body: usize, through: bool) -> (usize, Pose) {
     (parent, at)
 }
 
-/// Holds the bodies together as their joints do.
-pub(super) fn hold_together(m: &Model, sim: &mut Sim, parts: &Parts, q: &[f64]) {
+/// Holds the bodies together as their joints do. Returns per body the joint that holds it.
+fn hold_together(m: &Model, sim: &mut Sim, parts: &Parts, q: &[f64]) -> Vec<Option<ImpulseJointHandle>> {
+    let mut holds = vec![None; m.bodies.len()];
     for i in (1..m.bodies.len()).filter(|i| !is_carried(m, *i)) {
         let soft = is_soft(m, i);
         let (parent, at) = seat(m, q, i, soft);
@@ -88,13 +89,14 @@ pub(super) fn hold_together(m: &Model, sim: &mut Sim, parts: &Parts, q: &[f64]) 
             JointType::Universal | JointType::Spherical => lin,
             JointType::Floating => continue,
         };
-        insert(sim, parts, (parent, at), (i, Pose::IDENTITY), locked);
+        holds[i] = insert(sim, parts, (parent, at), (i, Pose::IDENTITY), locked);
         if m.bodies[i].joint == JointType::Universal {
             // z of the child stays across x of the parent: a point on it does.
             let point = frame(&M3::identity(), V3::new(0.0, 0.0, parts.gyration(i)));
             insert(sim, parts, (parent, at), (i, point), JointAxesMask::LIN_X);
         }
     }
+    holds
 }
 
 /// A joint of two bodies of the model, each with its frame. Whether the two touch is not its business.
@@ -119,7 +121,8 @@ fn insert(
 impl Rows {
     /// Makes the rows of all axes whose joints are whole.
     pub fn new(m: &Model, sim: &mut Sim, parts: &Parts, q: &[f64]) -> Self {
-        let rows = (0..m.axes.len()).map(|axis| Row::new(m, sim, parts, (q, axis))).collect();
+        let holds = hold_together(m, sim, parts, q);
+        let rows = (0..m.axes.len()).map(|axis| Row::new(m, sim, parts, (q, axis, &holds))).collect();
         Self { rows }
     }
 
@@ -162,7 +165,13 @@ pub(super) struct Load {
 }
 
 impl Row {
-    fn new(m: &Model, sim: &mut Sim, parts: &Parts, (q, axis): (&[f64], usize)) -> Option<Self> {
+    fn new(
+        m: &Model,
+        sim: &mut Sim,
+        parts: &Parts,
+        at: (&[f64], usize, &[Option<ImpulseJointHandle>]),
+    ) -> Option<Self> {
+        let (q, axis, holds) = at;
         let child = m.carrier(axis)?;
         let b = &m.bodies[child];
         let (along, row_axis, swapped) = match (m.axes[axis].slot, b.joint) {
@@ -180,8 +189,10 @@ impl Row {
         let joint = |sim: &mut Sim| insert(sim, parts, first, second, JointAxesMask::empty());
         let a = &m.axes[axis];
         let bounded = (a.lower.is_finite() || a.upper.is_finite()) && a.stop.cfm == 0.0;
-        let motor = joint(sim)?;
-        let stop = if bounded { joint(sim) } else { None };
+        // A hinge turns about the same axis as its joint: one joint for all. Its stops are solved with its locks then.
+        let hinge = holds[child].filter(|_| b.joint == JointType::Revolute);
+        let motor = hinge.or_else(|| joint(sim))?;
+        let stop = if bounded { hinge.or_else(|| joint(sim)) } else { None };
         Some(Self { along, axis: row_axis, swapped, parent, child, motor, stop, length: 1.0 })
     }
 

@@ -26,7 +26,7 @@ use crate::solver::{AxisCommand, ContactPoint, Work};
 pub use honour::shortfalls;
 
 use contacts::{Contacts, Filter, insert_colliders};
-use joints::{Load, Rows, hold_together};
+use joints::{Load, Rows};
 use parts::Parts;
 use sim::Sim;
 
@@ -37,6 +37,8 @@ pub struct Rapier {
     before: State,
     /// Where the bodies are.
     k: Kinematics,
+    /// Where they were at the start of the last part of a step.
+    from: Kinematics,
     laws: Actuation,
     sim: Sim,
     parts: Parts,
@@ -68,6 +70,7 @@ impl Rapier {
         Self {
             before: state.clone(),
             state,
+            from: k.clone(),
             k,
             laws: Actuation::new(m),
             sim,
@@ -88,6 +91,7 @@ impl Rapier {
         (self.sim, self.parts, self.rows) = build(m, &mut self.state, &mut self.k);
         let worst = self.contacts.worst;
         self.contacts = Contacts { worst, ..Contacts::new(m) };
+        self.from.clone_from(&self.k);
         self.loads.resize(m.bodies.len(), Load::default());
         self.laws.forget();
     }
@@ -108,7 +112,9 @@ impl Rapier {
         if s.effects.body_damping {
             self.damp(m, part.h);
         }
+        self.from.copy_from(&self.k);
         self.parts.read(m, &self.sim, &self.state, &mut self.k);
+        self.laws.work.contacts += self.contacts.taken(m, [&self.from, &self.k], part.h);
         let gap = read_state(m, &self.k, &mut self.state);
         let finite = sound && self.state.finite();
         if finite {
@@ -169,7 +175,6 @@ fn build(m: &Model, state: &mut State, k: &mut Kinematics) -> (Sim, Parts, Rows)
     kinematics(m, k, &state.q, &state.v);
     let mut sim = Sim::new();
     let parts = Parts::new(m, &mut sim, k, |body| deactivation(m, body));
-    hold_together(m, &mut sim, &parts, &state.q);
     let rows = Rows::new(m, &mut sim, &parts, &state.q);
     insert_colliders(m, &mut sim, &parts);
     (sim, parts, rows)

@@ -96,8 +96,9 @@ fn parameters() -> IntegrationParameters {
         friction_model: FrictionModel::Simplified,
         friction_in_bias_pass: false,
         warmstart_coefficient: 1.0,
+        // It would be taken back at once: rapier applies it to a row just before that is solved.
         warmstart_joints: false,
-        num_internal_pgs_iterations: 1,
+        num_internal_pgs_iterations: SWEEPS,
         num_internal_stabilization_iterations: 1,
         max_ccd_substeps: 1,
         normalized_prediction_distance: 0.02,
@@ -109,7 +110,11 @@ fn parameters() -> IntegrationParameters {
     }
 }
 
-/// Softness of locks and stops: as stiff as rapier's substep allows.
+/// Softness of locks and stops: a gap is closed within a substep, by rows that do not yield.
 pub(super) fn hard() -> SpringCoefficients<f64> {
     SpringCoefficients::new(1e6, 1.0)
 }
+
+/// Sweeps over all rows in each substep. One leaves motors and stops short of the locks of their own limb: with 10 substeps of 20 µs a
+/// toe that dry friction holds creeps by 10 mrad/s, and stops yield by 20 mrad; with four by 2 mrad/s and 5 mrad.
+const SWEEPS: usize = 4;
