@@ -19,7 +19,9 @@ mod bullet {
         let lib = match pkg_config::Config::new().cargo_metadata(false).probe("bullet-float64") {
             Ok(lib) => lib,
             Err(fault) => {
-                eprintln!("the feature `bullet` needs Bullet's float64 build: apt install libbullet-dev pkg-config\n{fault}");
+                eprintln!(
+                    "the feature `bullet` needs Bullet's float64 build: apt install libbullet-dev pkg-config\n{fault}"
+                );
                 std::process::exit(1)
             }
         };

@@ -27,6 +27,7 @@ pub struct Actuation {
     rates: Vec<EulerRates>,
     axes: Vec<AxisState>,
     mobility: FreeMobility,
+    gain: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -85,7 +86,14 @@ impl Actuation {
             rates: vec![EulerRates::default(); m.eulers.len()],
             axes: vec![axis; m.axes.len()],
             mobility: FreeMobility::new(m),
+            gain: GAIN,
         }
+    }
+
+    /// For an engine whose motors start from what they gave in the last step: it takes back by itself what its iteration leaves,
+    /// and both together would overshoot.
+    pub fn of_warm_motors(m: &Model) -> Self {
+        Self { gain: 0.0, ..Self::new(m) }
     }
 
     /// Forgets the steps so far.
@@ -199,7 +207,7 @@ impl Actuation {
             let total = motor + at.rotor * at.acceleration;
             let (effort, memory) = at.law.outcome(&at.piece, total, mean);
             at.memory = memory;
-            at.correction = if memory == 0 { 0.0 } else { at.correction + GAIN * (at.piece.speed - mean) };
+            at.correction = if memory == 0 { 0.0 } else { at.correction + self.gain * (at.piece.speed - mean) };
             at.brakes.drift = at.acceleration - at.brakes.mobility * effort;
             self.effort[i] += effort * h / whole;
             self.work.drives += effort * way;

@@ -1,7 +1,9 @@
 //! What Rust and C++ tell each other. Frames and velocities are in the world unless said otherwise; a body's own frame has its
 //! origin in the centre of mass and its axes along the principal ones. Poses are x, y, z and a unit quaternion x, y, z, w.
 
-pub use ffi::{BodySpec, Contact, JointForce, JointSpec, Motor, MotorInput, Moving, ShapeKind, ShapeSpec, Spec, StepInput};
+pub use ffi::{
+    BodySpec, Contact, JointForce, JointSpec, Motor, MotorInput, Moving, ShapeKind, ShapeSpec, Spec, StepInput,
+};
 pub use ffi::{World, build};
 
 #[cxx::bridge(namespace = "realnoid::bullet")]

@@ -77,7 +77,7 @@ impl Bullet {
             inputs: vec![],
             given: vec![],
             motors: vec![0.0; m.axes.len()],
-            actuation: Actuation::new(m),
+            actuation: Actuation::of_warm_motors(m),
             contacts: vec![],
             received: vec![],
             worst_penetration: 0.0,
@@ -218,11 +218,7 @@ impl Bullet {
     }
 
     fn advance(&mut self, m: &Model, s: &StepSettings) -> Result<(), String> {
-        let input = StepInput {
-            h: s.h,
-            gravity: s.gravity,
-            iterations: i32::try_from(s.passes).unwrap_or(i32::MAX),
-        };
+        let input = StepInput { h: s.h, gravity: s.gravity, iterations: i32::try_from(s.passes).unwrap_or(i32::MAX) };
         let (inputs, given, bodies) = (&self.inputs, &mut self.given, &mut self.bodies);
         let world = self.world.0.get_mut().unwrap_or_else(PoisonError::into_inner).as_mut().map_err(|e| e.clone())?;
         let world = world.as_mut().ok_or_else(String::new)?;

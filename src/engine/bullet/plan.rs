@@ -135,7 +135,11 @@ impl Plan {
         let chain = chain(m, child)?;
         let turning: Vec<usize> = chain.iter().copied().filter(|i| softness(m, *i).is_none()).collect();
         if turning.iter().any(|i| m.bodies[*i].joint == JointType::Floating) {
-            let alone = if chain.len() == 1 { Ok(()) } else { Err(format!("{} floats on a body without mass", named(m, child))) };
+            let alone = if chain.len() == 1 {
+                Ok(())
+            } else {
+                Err(format!("{} floats on a body without mass", named(m, child)))
+            };
             return alone;
         }
         let parent = m.bodies[chain[0]].parent;
@@ -223,7 +227,9 @@ impl Shape {
         let free = |dof: usize, axis: Option<usize>, sense: f64| Free { body, dof, axis, sense };
         Ok(match m.bodies[body].joint {
             JointType::Revolute => Self { frame, free: vec![free(TURNS[0], scalar(m, body, 0), 1.0)] },
-            JointType::Prismatic => Self { frame: frame * x_along_z(), free: vec![free(ALONG_X, scalar(m, body, 0), 1.0)] },
+            JointType::Prismatic => {
+                Self { frame: frame * x_along_z(), free: vec![free(ALONG_X, scalar(m, body, 0), 1.0)] }
+            }
             JointType::Universal => {
                 let [h, p] = [0, 1].map(|k| scalar(m, body, k));
                 Self { frame: frame * z_along_x(), free: vec![free(TURNS[0], h, 1.0), free(TURNS[2], p, 1.0)] }
@@ -256,7 +262,8 @@ impl Shape {
             ));
         }
         // Two: about z, then x. Three: about z, y, x.
-        let (y, dofs) = if axes.len() == 2 { (axes[0].cross(&axes[1]), [TURNS[0], TURNS[2], 0]) } else { (axes[1], TURNS) };
+        let (y, dofs) =
+            if axes.len() == 2 { (axes[0].cross(&axes[1]), [TURNS[0], TURNS[2], 0]) } else { (axes[1], TURNS) };
         let x = y.cross(&axes[0]);
         let turned = quat(&Mat3::from_columns(&[x, y, axes[0]]));
         let frame = Pose::from_parts(frames[0].translation, turned);
