@@ -6,7 +6,7 @@ use realnoid::engine::{Engine, EngineKind, State, StepSettings, bullet::Bullet};
 use realnoid::math::Vec3;
 use realnoid::model::{Base, EulerFrame, JointType, Model};
 use realnoid::solver::AxisCommand;
-use realnoid::world::Integrator;
+use realnoid::world::{Integrator, World};
 
 fn read_angles(m: &Model, s: &mut State) {
     for (g, angles) in m.eulers.iter().zip(&mut s.angles) {
@@ -98,16 +98,25 @@ fn pendulum(limit: &str, more: &str) -> Model {
     )
 }
 
-/// A servo holds 1 rad, and its effort is the weight's torque there.
+/// Iterations after which nothing of a single hinge's servo or stop is left: the row of its motor is about the centre of mass, and
+/// takes I/(I + m l²) = 4 % of what is left in each.
+fn finely(m: &Model) -> World {
+    let s = realnoid::world::Settings { solver_iterations: 300, ..settings(1e-3) };
+    touching::world(m.clone(), s)
+}
+
+/// A servo holds 1 rad, and its effort is the weight's torque there; with few iterations nearly.
 #[test]
 fn a_servo_holds_a_pendulum_and_tells_its_torque() {
-    let mut w = world(pendulum("", r#"<drive mode="servo" max_torque="20"/>"#), 1e-3);
-    w.set_commands(&[AxisCommand::servo(1.0)]).unwrap();
-    run(&mut w, 3.0);
-    let (q, v) = w.state().axis(w.model(), 0);
-    assert!((q - 1.0).abs() < 1e-6 && v.abs() < 1e-6, "{q} {v}");
-    let torque = G * 0.5 * q.sin();
-    assert!((w.efforts()[0] - torque).abs() < 1e-3 * torque, "{} of {torque}", w.efforts()[0]);
+    let m = pendulum("", r#"<drive mode="servo" max_torque="20"/>"#);
+    for (mut w, off) in [(finely(&m), 1e-6), (world(m.clone(), 1e-3), 2e-3)] {
+        w.set_commands(&[AxisCommand::servo(1.0)]).unwrap();
+        run(&mut w, 3.0);
+        let (q, v) = w.state().axis(w.model(), 0);
+        assert!((q - 1.0).abs() < off && v.abs() < 1e-6, "{q} {v}");
+        let torque = G * 0.5 * q.sin();
+        assert!((w.efforts()[0] - torque).abs() < 1e-3 * torque, "{} of {torque}", w.efforts()[0]);
+    }
 }
 
 /// Damping is implicit, whatever its size: q̇ = −G m l q / d for a stiff damper.
@@ -116,7 +125,7 @@ fn a_stiff_damper_creeps() {
     let mut m = pendulum("", "");
     m.axes[0].damping = 500.0;
     m.effects.damping = true;
-    let mut w = world(m.clone(), 1e-3);
+    let mut w = finely(&m);
     let mut s = State::initial(&m);
     s.set_axis(&m, 0, 0.1, 0.0);
     w.set_initial_state(s);
@@ -146,7 +155,7 @@ fn stops_near_and_far_hold() {
     for (lower, upper, from, torque) in [(-0.5, 0.4, 0.0, 30.0), (-0.5, 0.4, 0.0, -30.0), (-1.0, 9.0, 8.0, 30.0)] {
         let limit = format!(r#"<limit lower="{lower}" upper="{upper}" effort="100" velocity="100"/>"#);
         let m = pendulum(&limit, "");
-        let mut w = world(m.clone(), 1e-3);
+        let mut w = finely(&m);
         let mut s = State::initial(&m);
         s.set_axis(&m, 0, from, 0.0);
         w.set_initial_state(s);
@@ -275,22 +284,22 @@ fn hinges_without_mass_between_them_are_one_joint() {
     }
 }
 
-/// The humanoid with all three groups, every axis a servo: after 5 s every axis of it and of rbx stands at its target, but for
-/// what the torques of the drives do not hold.
+/// The humanoid with all three groups, every axis a servo: after 5 s every axis stands where it does in rbx, but for what 50
+/// iterations leave of the load: 0.3°.
 #[test]
 fn the_humanoid_follows_its_servos() {
     let m = super::support::urdf::model(&std::fs::read_to_string("urdf/origin.urdf").unwrap(), Base::Fixed);
     let targets: Vec<f64> = m.axes.iter().map(|a| 0.3f64.max(a.lower).min(a.upper)).collect();
     let ends = [EngineKind::Rbx, EngineKind::Bullet].map(|engine| {
-        let s = realnoid::world::Settings { engine, ..settings(5e-4) };
-        let mut w = realnoid::world::World::new(m.clone(), s).unwrap();
+        let s = realnoid::world::Settings { engine, solver_iterations: 50, ..settings(5e-4) };
+        let mut w = World::new(m.clone(), s).unwrap();
         w.set_commands(&targets.iter().map(|t| AxisCommand::servo(*t)).collect::<Vec<_>>()).unwrap();
         run(&mut w, 5.0);
         (0..m.axes.len()).map(|i| w.state().axis(&m, i).0).collect::<Vec<_>>()
     });
     for (i, axis) in m.axes.iter().enumerate() {
         let (a, b) = (ends[0][i], ends[1][i]);
-        assert!((a - b).abs() < 1e-3, "{}: rbx {a}, bullet {b}, target {}", axis.name, targets[i]);
+        assert!((a - b).abs() < 5e-3, "{}: rbx {a}, bullet {b}, target {}", axis.name, targets[i]);
     }
 }
 

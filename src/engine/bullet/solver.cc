@@ -43,7 +43,7 @@ void Solver::convertJoints(btTypedConstraint** constraints, int count, const btC
         if (m.rows != n || m.h <= 0) return;
         for (int i = 0; i < n; i++) {
             btSolverConstraint& row = rows[first + i];
-            double impulse = m.impulse[i] * (info.m_timeStep / m.h);
+            double impulse = info.m_warmstartingFactor * m.impulse[i] * (info.m_timeStep / m.h);
             impulse = btMin(btMax(impulse, row.m_lowerLimit), row.m_upperLimit);
             row.m_appliedImpulse = impulse;
             btSolverBody& a = m_tmpSolverBodyPool[row.m_solverBodyIdA];
