@@ -193,3 +193,55 @@ fn a_rotor_counts() {
         assert!((v / should - 1.0).abs() < 1e-3, "{} {v} {should}", engine.name());
     }
 }
+
+/// Combined hinges, cardans and 3DOF joints of the humanoid swing freely, from random speeds, as in rbx.
+#[test]
+fn all_groups_swing_as_in_rbx() {
+    let mut m = Model::clone(&humanoid());
+    m.effects = realnoid::model::Effects { gravity: true, ..realnoid::model::Effects::NONE };
+    let m = Arc::new(m);
+    let mut rng = support::Random(5);
+    let mut start = realnoid::engine::State::initial(&m);
+    (0..m.axes.len()).for_each(|i| start.set_axis(&m, i, 0.3 * rng.unit(), 2.0 * rng.unit()));
+    let end = |engine: EngineKind| {
+        let mut w = world(&m, engine);
+        w.set_initial_state(start.clone());
+        run(&mut w, 0.25);
+        w.state().clone()
+    };
+    let reference = end(EngineKind::Rbx);
+    for engine in engines().into_iter().filter(|e| e.capabilities().joints) {
+        let state = end(engine);
+        for (i, a) in m.axes.iter().enumerate() {
+            let (is, should) = (state.axis(&m, i).0, reference.axis(&m, i).0);
+            assert!((is - should).abs() < 2e-3, "{} {}: {is} {should}", engine.name(), a.name);
+        }
+    }
+}
+
+/// Torques push H and B of the 3DOF joints to both ends of their ranges, while a servo holds P; then the other way round: they stay
+/// there. At the pole, where H and B are one axis, only rbx can tell them apart.
+#[test]
+fn angles_of_3dof_joints_stop() {
+    let m = humanoid();
+    let ball = |name: &str| ["shoulder", "neck"].iter().any(|part| name.contains(part));
+    for engine in engines().into_iter().filter(|e| e.capabilities().joints) {
+        for (sign, pitch) in [(-1.0, false), (1.0, false), (1.0, true)] {
+            let mut w = world(&m, engine);
+            let command = |a: &realnoid::model::Axis| match ball(&a.name) {
+                true if a.name.contains("pitch") == pitch => AxisCommand::torque(10.0 * sign),
+                true => AxisCommand::servo(0.0),
+                false => AxisCommand::torque(0.0),
+            };
+            w.set_commands(&m.axes.iter().map(command).collect::<Vec<_>>()).unwrap();
+            run(&mut w, 1.5);
+            for (i, a) in m.axes.iter().enumerate().filter(|(_, a)| ball(&a.name)) {
+                let (q, _) = w.state().axis(&m, i);
+                let beyond = (a.lower - q).max(q - a.upper);
+                assert!(beyond < 0.02, "{} {} {q}: {} {}", engine.name(), a.name, a.lower, a.upper);
+                let ends = a.name.contains("pitch") == pitch;
+                assert!(!ends || beyond > -0.02, "{} {} {q} is not at its end", engine.name(), a.name);
+            }
+        }
+    }
+}
