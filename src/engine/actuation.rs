@@ -44,6 +44,8 @@ struct AxisState {
     brakes: Brakes,
     /// What the engine's iteration leaves of the speed of its riser is taken back by the motor of the next step, rad/s or m/s.
     correction: f64,
+    /// And what it leaves of the torque of a segment, N·m or N.
+    missing: f64,
     /// Inertia of the rotor that counts, kg·m² or kg.
     rotor: f64,
     /// Way to the lower (≤ 0 inside) and to the upper stop, if they are hard and in force.
@@ -75,6 +77,7 @@ impl Actuation {
             acceleration: 0.0,
             brakes: Brakes::default(),
             correction: 0.0,
+            missing: 0.0,
             rotor: 0.0,
             stop: None,
         };
@@ -106,7 +109,8 @@ impl Actuation {
     /// Forgets what the axes did in the last step; the books go on.
     pub fn forget(&mut self) {
         for axis in &mut self.axes {
-            (axis.memory, axis.acceleration, axis.correction) = (0, 0.0, 0.0);
+            (axis.memory, axis.acceleration) = (0, 0.0);
+            (axis.correction, axis.missing) = (0.0, 0.0);
             axis.brakes = Brakes::default();
         }
     }
@@ -170,16 +174,7 @@ impl Actuation {
 
     /// Torque and motor of an axis in the step that was prepared, rotor included; of a 3DOF angle along its gradient.
     pub fn motor(&self, axis: usize, h: f64) -> Piece {
-        let at = &self.axes[axis];
-        let (piece, inert) = (at.piece, at.rotor / h);
-        match piece.riser {
-            Some(_) => {
-                let (torque, speed) = (piece.torque - inert * (piece.speed - at.v), piece.speed + at.correction);
-                Piece { torque, speed, ..piece }
-            }
-            None if inert == 0.0 => piece,
-            None => Piece { damping: piece.damping + inert, speed: at.v, bound: f64::INFINITY, ..piece },
-        }
+        self.axes[axis].motor(h)
     }
 
     /// How far it is to the lower (≤ 0 inside) and the upper stop (≥ 0 inside), rad or m; infinite where there is none. `None`:
@@ -196,16 +191,13 @@ impl Actuation {
     /// Ends a step, or a part of it, with this state. `motors`: per axis, what its motor gave on average, N·m or N.
     pub fn finish(&mut self, m: &Model, start: (f64, f64), state: &State, motors: &[f64]) {
         let (h, whole) = start;
-        for (i, at) in self.axes.iter_mut().enumerate() {
-            let (q, v) = state.axis(m, i);
+        for i in 0..self.axes.len() {
+            let ((q, v), at) = (state.axis(m, i), &mut self.axes[i]);
             let (way, mean) = (q - at.q, (q - at.q) / h);
             at.acceleration = (v - at.v) / h;
-            let motor = match at.piece.riser {
-                Some(_) => at.piece.torque - at.rotor / h * (at.piece.speed - at.v) + motors[i],
-                None => at.piece.torque + motors[i],
-            };
-            let total = motor + at.rotor * at.acceleration;
+            let total = at.motor(h).torque + motors[i] + at.rotor * at.acceleration;
             let (effort, memory) = at.law.outcome(&at.piece, total, mean);
+            at.missing = at.still_missing(total, v);
             at.memory = memory;
             at.correction = if memory == 0 { 0.0 } else { at.correction + self.gain * (at.piece.speed - mean) };
             at.brakes.drift = at.acceleration - at.brakes.mobility * effort;
@@ -232,12 +224,38 @@ impl AxisState {
         self.piece = self.law.piece(self.v, &reach, self.memory, self.rotor == 0.0);
     }
 
+    fn motor(&self, h: f64) -> Piece {
+        let (piece, inert) = (self.piece, self.rotor / h);
+        match piece.riser {
+            Some(_) => {
+                let (torque, speed) = (piece.torque - inert * (piece.speed - self.v), piece.speed + self.correction);
+                Piece { torque, speed, ..piece }
+            }
+            None if inert + piece.damping == 0.0 => piece,
+            None => Piece {
+                torque: piece.torque + self.missing,
+                damping: piece.damping + inert,
+                speed: self.v,
+                bound: f64::INFINITY,
+                ..piece
+            },
+        }
+    }
+
+    /// In the next step. `total`: torque of the law in this one, which ended with the speed `v`.
+    fn still_missing(&self, total: f64, v: f64) -> f64 {
+        match self.piece.riser {
+            Some(_) => 0.0,
+            None => self.missing + GAIN * (self.piece.torque - self.piece.damping * (v - self.v) - total),
+        }
+    }
+
     fn stuck(&self) -> bool {
         self.law.sticks(self.memory) || self.v == 0.0
     }
 }
 
-/// Share of what is left of a speed that the next step's motor takes back.
+/// Share of what is left of a speed or a torque that the next step's motor takes back.
 const GAIN: f64 = 0.5;
 /// Steps within which the present acceleration must bring an axis to a riser so that it is looked for there.
 const AHEAD: f64 = 2.0;

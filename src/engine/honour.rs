@@ -15,6 +15,14 @@ pub struct Shortfall {
     pub instead: String,
 }
 
+impl std::fmt::Display for Shortfall {
+    /// The item, whose it is, and what happens instead.
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let instead = if self.instead.is_empty() { String::new() } else { format!(": {}", self.instead) };
+        write!(f, "{} of {}{instead}", self.item, self.element)
+    }
+}
+
 /// What of a model an engine does not honour, each kind of item next to each other.
 pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
     let can = kind.capabilities();
