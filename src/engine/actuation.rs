@@ -93,10 +93,10 @@ impl Actuation {
         }
     }
 
-    /// For an engine whose motors start from what they gave in the last step: it takes back by itself what its iteration leaves,
-    /// and both together would overshoot.
+    /// For an engine whose motors start from what they gave in the last step: it takes back most of what its iteration leaves by
+    /// itself, and both in full would overshoot.
     pub fn of_warm_motors(m: &Model) -> Self {
-        Self { gain: 0.0, ..Self::new(m) }
+        Self { gain: 0.1, ..Self::new(m) }
     }
 
     /// Forgets the steps so far.
