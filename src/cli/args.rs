@@ -186,7 +186,7 @@ pub struct SimulateArgs {
     /// implicit_midpoint, semi_implicit_euler or rk4.
     #[arg(long)]
     pub integrator: Option<String>,
-    /// rbx.
+    /// rbx, rapier or bullet (a cargo feature); rbx unless the scene says otherwise.
     #[arg(long)]
     pub engine: Option<String>,
     /// m/s², world frame; 0,0,-9.80665 unless the scene says otherwise.

@@ -117,6 +117,8 @@ pub struct Setup {
     pub base_pose: Pose,
     /// What its surfaces are like where its tags do not say.
     pub surface: Defaults,
+    /// Who simulates it.
+    pub engine: EngineKind,
 }
 
 /// Reads and checks a robot as far as it goes.
@@ -124,7 +126,7 @@ pub struct Setup {
 /// # Errors
 /// Why the file could not be read.
 pub fn examine(source: Source, base: Base, base_pose: Pose) -> Result<Examined, String> {
-    examine_with(source, Setup { base, base_pose, surface: Defaults::default() })
+    examine_with(source, Setup { base, base_pose, ..Setup::default() })
 }
 
 /// As [`examine`].
@@ -148,7 +150,6 @@ pub fn examine_text((file, text): (&str, &str), packages: &[(String, PathBuf)], 
         let base = if is_static(&d) { Base::Fixed } else { setup.base };
         let (bodies, more) = link_bodies(&d, &meshes);
         findings.extend(more);
-        findings.extend(not_honoured(EngineKind::default().name(), &d));
         findings.extend(loose_anchors(&d, base));
         if findings.iter().any(|f| f.severity == Severity::Error) {
             return None;
@@ -156,6 +157,7 @@ pub fn examine_text((file, text): (&str, &str), packages: &[(String, PathBuf)], 
         let simulated: Vec<MassProperties> = bodies.iter().map(|body| body.simulated).collect();
         let mut model = Model::build(&d, &simulated, base, setup.base_pose);
         findings.extend(colliders(&d, &mut model, &meshes, setup.surface));
+        findings.extend(not_honoured(setup.engine, &d, &model));
         let singular = singular_axes(&model);
         findings.extend(singular.iter().map(|body| singular_finding(&d, &model, *body)));
         let unsound = if singular.is_empty() { unsound_breaks(&d, &model) } else { vec![] };

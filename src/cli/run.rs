@@ -56,6 +56,7 @@ pub fn run(source: Source, args: RosArgs) -> ExitCode {
 fn assembly(source: Source, mut values: Values) -> Result<(Assembly, Values), Fault> {
     let mut scene = Scene::read(values.scene()).map_err(Fault::Scene)?;
     values.adopt(&scene.settings, &scene.given).map_err(Fault::Scene)?;
+    scene.settings.engine = values.pace().settings.engine;
     if values.ground() {
         scene.lay_ground();
     }

@@ -88,6 +88,7 @@ impl<'a> Plan<'a> {
             scene.lay_ground();
         }
         let settings = settings(args, &scene).map_err(usage)?;
+        scene.settings.engine = settings.engine;
         let stand = (base(args, &scene), base_pose(args, &scene).map_err(usage)?);
         let (source, switch) =
             (args.packages.source(args.urdf.as_deref()), |m: &mut Model| switch_effects(args, &scene, m));
@@ -186,6 +187,7 @@ impl<'a> Plan<'a> {
         let broken = self.world.broken().iter();
         let broken: Vec<_> = broken.map(|b| json!({"joint": *b.joint, "time": b.time, "force": b.force})).collect();
         json!({
+            "engine": self.world.settings().engine.name(),
             "steps": s.steps,
             "rows": outcome.rows,
             "output": outcome.files,
@@ -195,6 +197,7 @@ impl<'a> Plan<'a> {
             "worst_penetration": s.worst_penetration,
             "contacts": self.world.contacts().len(),
             "worst_stop_violation": s.worst_stop_violation,
+            "joint_drift": self.world.joint_drift(),
             "peaks": outcome.peaks(self.world.model()),
             "finite": outcome.finite,
             "stopped": outcome.stopped,

@@ -32,6 +32,7 @@ pub use damping::{Scheme, damping_power, damping_powers, write_damping};
 pub use energy::{Energy, Momentum, body_energy, energy, momentum};
 pub use integrate::{coordinate_rates, exponential_step, move_coordinates, normalize, turn};
 pub use joint::joint_transform;
+pub(crate) use joint::{joint_velocity, universal_axis};
 pub use joint_force::{JointForces, Outside};
 pub use kinematics::{Kinematics, Posed, body_pose, kinematics, kinematics_of, link_pose, link_twist};
 pub use layout::{CHUNK, Layout};

@@ -1,34 +1,138 @@
 //! What an engine cannot honour is told, never silently dropped (E-2).
 
-use crate::description::{Description, Finding, Severity};
+use super::EngineKind;
+use crate::description::{Description, Finding, Position, Severity};
+use crate::model::{LinkFrame, Model};
 
-/// What stands in the text of a joint and has no effect in the engine of this name: a warning for each kind of item, with the
-/// engine, the joints and the item.
-pub fn not_honoured(engine: &str, d: &Description) -> Vec<Finding> {
-    let mut found: Vec<(&'static str, Finding, usize)> = vec![];
-    let limits = d.joints.iter().filter_map(|joint| Some((joint, joint.limit.as_ref()?)));
-    for (joint, limit) in limits {
-        for item in &limit.beyond {
-            if let Some((_, _, others)) = found.iter_mut().find(|(known, ..)| known == item) {
-                *others += 1;
-                continue;
-            }
-            let finding = Finding {
-                severity: Severity::Warning,
-                code: "not-honoured",
-                message: format!("the engine {engine} does not honour <limit {item}> of joint '{}'", joint.name),
-                element: format!("joint '{}' <limit>", joint.name),
-                at: limit.at,
-                mend: "leave it to the controller, which plans the motion".into(),
-            };
-            found.push((item, finding, 0));
+/// An item of a model that an engine does not honour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shortfall {
+    /// Whose it is: `joint 'hip'`, `link 'foot'`.
+    pub element: String,
+    /// `<mimic>`.
+    pub item: String,
+    /// What happens instead.
+    pub instead: String,
+}
+
+impl std::fmt::Display for Shortfall {
+    /// The item, whose it is, and what happens instead.
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let instead = if self.instead.is_empty() { String::new() } else { format!(": {}", self.instead) };
+        write!(f, "{} of {}{instead}", self.item, self.element)
+    }
+}
+
+/// What of a model an engine does not honour, each kind of item next to each other.
+pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
+    let can = kind.capabilities();
+    let mut found = vec![];
+    let mut tell = |element: String, item: &str, instead: &str| {
+        found.push(Shortfall { element, item: item.into(), instead: instead.into() });
+    };
+    let joint = |name: &str| format!("joint '{name}'");
+    if !can.couplings {
+        for c in m.couplings_in_force() {
+            tell(joint(&m.axes[c.follower].name), "<mimic>", "it moves by itself");
         }
     }
-    let told = |(_, mut finding, others): (_, Finding, usize)| {
+    if !can.softness {
+        for soft in m.softs.iter().filter(|s| s.softness.cfm > 0.0) {
+            let element = m.body_of(soft.v).map_or_else(String::new, |body| name_of(m, body));
+            tell(element, "<constraint cfm>", "the joint is hard");
+        }
+    }
+    if !can.rotor_inertia {
+        for a in m.axes.iter().filter(|a| a.drive.rotor_inertia > 0.0) {
+            tell(joint(&a.name), "<drive rotor_inertia>", "the rotor has no inertia");
+        }
+    }
+    if !can.breaking {
+        for b in &m.breakables {
+            tell(joint(&b.joint), "<constraint break_threshold>", "it does not come apart");
+        }
+    }
+    if !can.rolling_friction {
+        let rolls = |s: &crate::model::Surface| s.rolling > 0.0 || s.spinning > 0.0;
+        for c in m.colliders.iter().filter(|c| m.effects.contact && rolls(&c.surface)) {
+            tell(format!("link '{}'", c.name), "<surface rolling_friction spinning_friction>", "it rolls without loss");
+        }
+    }
+    if kind == EngineKind::Rapier {
+        found.extend(super::rapier::shortfalls(m));
+    }
+    found.dedup();
+    found
+}
+
+/// The link that a body carries, or the joint in front of it.
+pub(super) fn name_of(m: &Model, body: usize) -> String {
+    let carried = |b: usize| m.links.iter().find(|l| matches!(l.frame, LinkFrame::OnBody { body, .. } if body == b));
+    let mut at = body;
+    while carried(at).is_none() && at + 1 < m.bodies.len() {
+        at += 1;
+    }
+    carried(at).map_or_else(|| format!("body {body}"), |l| format!("link '{}'", l.name))
+}
+
+/// What stands in a text and has no effect in an engine: a warning for each kind of item, with the engine, the elements and the
+/// item. `m` is the model of the text.
+pub fn not_honoured(kind: EngineKind, d: &Description, m: &Model) -> Vec<Finding> {
+    let engine = kind.name();
+    let limits = d.joints.iter().filter_map(|joint| Some((joint, joint.limit.as_ref()?)));
+    let beyond = limits.flat_map(|(joint, limit)| {
+        let one = move |item: &&'static str| {
+            let shortfall = Shortfall {
+                element: format!("joint '{}'", joint.name),
+                item: format!("<limit {item}>"),
+                instead: String::new(),
+            };
+            (shortfall, limit.at, "leave it to the controller, which plans the motion")
+        };
+        limit.beyond.iter().map(one)
+    });
+    let other = "choose an engine that does (rbx does it all), or take it out";
+    let told = shortfalls(kind, m).into_iter().map(|s| (place_of(d, &s.element), s)).map(|(at, s)| (s, at, other));
+    let mut found: Vec<(Shortfall, Finding, usize)> = vec![];
+    for (shortfall, at, mend) in beyond.chain(told) {
+        let same = |s: &Shortfall| s.item == shortfall.item && s.instead == shortfall.instead;
+        match found.iter_mut().find(|(s, ..)| same(s)) {
+            Some((_, _, others)) => *others += 1,
+            None => {
+                let finding = finding(engine, &shortfall, at, mend);
+                found.push((shortfall, finding, 0));
+            }
+        }
+    }
+    let named = |(shortfall, mut finding, others): (Shortfall, Finding, usize)| {
         if others > 0 {
             finding.message.push_str(&format!(", nor of {others} other{}", if others == 1 { "" } else { "s" }));
         }
+        if !shortfall.instead.is_empty() {
+            finding.message.push_str(&format!(": {}", shortfall.instead));
+        }
         finding
     };
-    found.into_iter().map(told).collect()
+    found.into_iter().map(named).collect()
+}
+
+fn finding(engine: &str, s: &Shortfall, at: Position, mend: &str) -> Finding {
+    let tag = s.item.split(' ').next().unwrap_or_default().trim_end_matches('>');
+    Finding {
+        severity: Severity::Warning,
+        code: "not-honoured",
+        message: format!("the engine {engine} does not honour {} of {}", s.item, s.element),
+        element: format!("{} {tag}>", s.element),
+        at,
+        mend: mend.into(),
+    }
+}
+
+/// Where a joint or link stands in the text.
+fn place_of(d: &Description, element: &str) -> Position {
+    let name = element.split('\'').nth(1).unwrap_or_default();
+    let link = || d.links.iter().find(|l| l.name == name).map(|l| l.at);
+    let joint = || d.joints.iter().find(|j| j.name == name).map(|j| j.at);
+    let first = if element.starts_with("joint") { joint().or_else(link) } else { link().or_else(joint) };
+    first.unwrap_or_default()
 }

@@ -1,6 +1,6 @@
 //! Which engines there are, and which of them this program was built with.
 
-use super::{Engine, Rbx, State};
+use super::{Engine, Rapier, Rbx, State};
 use crate::model::Model;
 
 /// A dynamics engine, chosen at run time.
@@ -9,25 +9,90 @@ pub enum EngineKind {
     /// Ours: reduced coordinates, every row in one solver.
     #[default]
     Rbx,
+    /// rapier3d-f64: a body for each link, joints as rows of impulses, small substeps.
+    Rapier,
+    /// The source's own: a body for each link, sequential impulses. In programs that were built with the feature `bullet`.
+    Bullet,
+    /// For free bodies only, in the source. A known name, but in no program yet.
+    Physx,
 }
 
-/// What an engine can do; what it cannot is told at load time.
+/// What an engine can do; what it cannot is told at load time ([`super::not_honoured`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities {
     /// A copy goes on with the same bits.
     pub exact_copy: bool,
+    /// It simulates links; else only bodies that no joint holds.
+    pub joints: bool,
+    /// Its joints cannot come apart by themselves: no drift.
+    pub reduced_coordinates: bool,
+    /// The chosen integrator is used; else it has its own.
+    pub integrators: bool,
+    /// Axes follow others (`<mimic>`).
+    pub couplings: bool,
+    /// Joints yield (`<constraint erp cfm>`); else they are hard.
+    pub softness: bool,
+    /// Inertia of rotors (`<drive rotor_inertia>`).
+    pub rotor_inertia: bool,
+    /// Joints come apart (`<constraint break_threshold>`).
+    pub breaking: bool,
+    /// Rolling and spinning friction (`<surface>`).
+    pub rolling_friction: bool,
+}
+
+impl Capabilities {
+    /// Of an engine that does it all.
+    const ALL: Self = Self {
+        exact_copy: true,
+        joints: true,
+        reduced_coordinates: true,
+        integrators: true,
+        couplings: true,
+        softness: true,
+        rotor_inertia: true,
+        breaking: true,
+        rolling_friction: true,
+    };
 }
 
 impl EngineKind {
     /// What it can do.
     pub fn capabilities(self) -> Capabilities {
+        let all = Capabilities::ALL;
         match self {
-            Self::Rbx => Capabilities { exact_copy: true },
+            Self::Rbx => all,
+            Self::Rapier => Capabilities {
+                reduced_coordinates: false,
+                integrators: false,
+                couplings: false,
+                softness: false,
+                ..all
+            },
+            // Bullet has no copy of a world: a copy starts without the impulses of the last step, and awake.
+            Self::Bullet => Capabilities {
+                exact_copy: false,
+                reduced_coordinates: false,
+                integrators: false,
+                couplings: false,
+                ..all
+            },
+            Self::Physx => Capabilities {
+                exact_copy: false,
+                joints: false,
+                reduced_coordinates: false,
+                integrators: false,
+                couplings: false,
+                softness: false,
+                rotor_inertia: false,
+                breaking: false,
+                rolling_friction: false,
+            },
         }
     }
 
-    /// Names for `--engine` and the parameter `engine`.
-    pub const NAMES: [(&'static str, Self); 1] = [("rbx", Self::Rbx)];
+    /// Names for `--engine` and the parameter `engine`: all that are known, built in or not.
+    pub const NAMES: [(&'static str, Self); 4] =
+        [("rbx", Self::Rbx), ("rapier", Self::Rapier), ("bullet", Self::Bullet), ("physx", Self::Physx)];
 
     /// By name.
     pub fn by_name(name: &str) -> Option<Self> {
@@ -44,13 +109,20 @@ impl EngineKind {
     /// # Errors
     /// Says how to build the program so that it has this engine, or what the engine cannot take.
     pub fn build(self, m: &Model, state: &State) -> Result<Box<dyn Engine>, String> {
-        match self {
+        self.available()?;
+        Ok(match self {
             Self::Rbx => {
                 let mut engine = Rbx::new(m);
                 engine.restart(m, state);
-                Ok(Box::new(engine))
+                Box::new(engine)
             }
-        }
+            Self::Rapier => Box::new(Rapier::new(m, state)),
+            #[cfg(feature = "bullet")]
+            Self::Bullet => Box::new(super::bullet::Bullet::new(m, state)?),
+            #[cfg(not(feature = "bullet"))]
+            Self::Bullet => return Err(NO_BULLET.into()),
+            Self::Physx => return Err(NO_PHYSX.into()),
+        })
     }
 
     /// Is it in this program?
@@ -59,7 +131,21 @@ impl EngineKind {
     /// Says how to build the program so that it is.
     pub fn available(self) -> Result<(), String> {
         match self {
-            Self::Rbx => Ok(()),
+            Self::Rbx | Self::Rapier => Ok(()),
+            Self::Bullet if cfg!(feature = "bullet") => Ok(()),
+            Self::Bullet => Err(NO_BULLET.into()),
+            Self::Physx => Err(NO_PHYSX.into()),
         }
     }
+
+    /// Those that are in this program.
+    pub fn built() -> impl Iterator<Item = Self> {
+        Self::NAMES.into_iter().map(|(_, kind)| kind).filter(|kind| kind.available().is_ok())
+    }
 }
+
+/// How to get it.
+const NO_BULLET: &str = "this program was built without the engine bullet; to have it: apt install libbullet-dev, then \
+                         cargo build --release --features bullet";
+/// It is not made.
+const NO_PHYSX: &str = "the engine physx is not part of realnoid yet; choose rbx, rapier or bullet";

@@ -1,15 +1,20 @@
 //! Engines behind one seam. `rbx` is ours; others join it here.
 
+pub mod actuation;
 mod apart;
 mod breaking;
+#[cfg(feature = "bullet")]
+pub mod bullet;
 mod coupled;
 mod euler;
 mod forest;
 mod guard;
 mod honour;
 mod kind;
+pub mod maximal;
 mod midpoint;
 mod paid;
+mod rapier;
 mod rbx;
 mod rk4;
 mod seam;
@@ -17,7 +22,8 @@ mod sleep;
 
 pub use apart::come_apart;
 pub use breaking::{BreakWatch, Overload};
-pub use honour::not_honoured;
+pub use honour::{Shortfall, not_honoured, shortfalls};
 pub use kind::{Capabilities, EngineKind};
+pub use rapier::Rapier;
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};
 pub use seam::Engine;

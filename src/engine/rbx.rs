@@ -185,7 +185,7 @@ impl State {
         StateRef { q: &self.q, v: &self.v, angles: &self.angles }
     }
 
-    fn finite(&self) -> bool {
+    pub(super) fn finite(&self) -> bool {
         self.q.iter().chain(&self.v).all(|x| x.is_finite())
     }
 }

@@ -208,7 +208,7 @@ fn trees(m: &Model) -> (Vec<Tree>, Vec<usize>) {
 }
 
 /// That of the link nearest the root on a body (J-6).
-fn limit(m: &Model, body: usize) -> Option<Deactivation> {
+pub(super) fn limit(m: &Model, body: usize) -> Option<Deactivation> {
     let on_it = |l: &&crate::model::LinkInfo| matches!(l.frame, LinkFrame::OnBody { body: b, .. } if b == body);
     let links = || m.links.iter().filter(on_it);
     let nearest = links().find(|l| l.parent.is_none_or(|p| !on_it(&&m.links[p]))).or_else(|| links().next())?;
@@ -220,7 +220,7 @@ fn size(v: V3<f64>) -> f64 {
 }
 
 /// NaN means "not given".
-fn same(a: &AxisCommand, b: &AxisCommand) -> bool {
+pub(super) fn same(a: &AxisCommand, b: &AxisCommand) -> bool {
     let equal = |x: f64, y: f64| x == y || (x.is_nan() && y.is_nan());
     a.mode == b.mode && equal(a.torque, b.torque) && equal(a.speed, b.speed) && equal(a.target, b.target)
 }

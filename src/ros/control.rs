@@ -83,7 +83,7 @@ impl ControlLoop {
     fn take_inputs(&mut self) {
         if self.end.pace.update() {
             self.pace = *self.end.pace.output_buffer();
-            // Checked before it was sent. Allocates if, and only if, the integrator changes.
+            // Checked before it was sent. Allocates if, and only if, the engine or the integrator changes.
             let _ = self.world.set_settings(self.pace.settings);
         }
         if self.end.commands.update() {

@@ -7,11 +7,12 @@ use super::log::Logger;
 use super::messages::{Float64MultiArray, JointState};
 use super::parameters::{ParameterServers, Values};
 use super::topics::{Topics, command_qos};
+use crate::engine::{EngineKind, shortfalls};
 use crate::model::Model;
 use crate::world::AxisCommand;
 use futures::StreamExt;
 use ros2_client::{Node, Subscription};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -94,6 +95,7 @@ struct Inbox<'a> {
     end: RefCell<CommandEnd>,
     live: &'a Live,
     log: &'a Logger,
+    engine: Cell<EngineKind>,
 }
 
 impl Listener {
@@ -108,6 +110,7 @@ impl Listener {
             end: RefCell::new(desk.end),
             live: &desk.live,
             log: &self.log,
+            engine: Cell::new(desk.values.pace().settings.engine),
         };
         let values = RefCell::new(desk.values);
         let applied = |values: &Values| inbox.take_parameters(values);
@@ -178,7 +181,14 @@ impl Inbox<'_> {
 
     fn take_parameters(&self, values: &Values) {
         self.rules.borrow_mut().allow_mode_switch = values.allow_mode_switch();
-        self.end.borrow_mut().set_pace(values.pace());
+        let pace = values.pace();
+        let engine = pace.settings.engine;
+        if self.engine.replace(engine) != engine {
+            for shortfall in shortfalls(engine, self.model) {
+                self.log.warn(format!("the engine {} does not honour {shortfall}", engine.name()));
+            }
+        }
+        self.end.borrow_mut().set_pace(pace);
         self.live.take(values);
     }
 }

@@ -196,6 +196,10 @@ impl Seat {
     pub fn body(&self) -> usize {
         self.body
     }
+
+    pub fn index(&self) -> usize {
+        self.index
+    }
 }
 
 impl AxisSet {

@@ -238,7 +238,7 @@ impl Law {
         (left + stiction, right - stiction)
     }
 
-    fn is_riser(&self, k: usize) -> bool {
+    pub(super) fn is_riser(&self, k: usize) -> bool {
         let knot = &self.knots[k];
         let sticks = self.stood > 0.0 && knot.kinds & FRICTION != 0;
         knot.drop > 0.0 || knot.kinds & (WALL_LEFT | WALL_RIGHT) != 0 || sticks

@@ -351,6 +351,11 @@ impl World {
         momentum(&self.model, &self.kinematics)
     }
 
+    /// By how much the two sides of a joint have come apart at most since the start, m; 0 in reduced coordinates.
+    pub fn joint_drift(&self) -> f64 {
+        self.engine.joint_drift()
+    }
+
     /// Counters.
     pub fn stats(&self) -> Stats {
         self.stats

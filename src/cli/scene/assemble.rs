@@ -4,7 +4,7 @@ use super::body::BodyEntry;
 use super::start::Start;
 use super::{RobotEntry, Scene};
 use crate::cli::check::read_text;
-use crate::cli::load::{Examined, Loaded, Setup, Source, examine_text, loaded};
+use crate::cli::load::{Examined, Loaded, Source, examine_text, loaded};
 use crate::description::{Finding, Severity};
 use crate::engine::State;
 use crate::math::{Mat3, Pose, Vec3};
@@ -62,7 +62,7 @@ pub fn assemble(
     switch: Switch,
 ) -> Result<Assembly, Fault> {
     let shown = |reason: String| Fault::Scene(scene.told(reason));
-    let setup = Setup { base, base_pose: pose, surface: scene.defaults };
+    let setup = scene.setup(base, pose);
     let urdf = source.urdf.or(scene.robot.urdf.as_deref());
     let examined = match urdf {
         None if spare == Spare::Nobody && scene.has_company() => {
@@ -112,7 +112,7 @@ impl Union<'_> {
         let told = |reason: String| format!("{}: {reason}", robot.place);
         let urdf: PathBuf = robot.urdf.clone().unwrap_or_default();
         let text = read_text(&urdf).map_err(told)?;
-        let setup = Setup { base: robot.base, base_pose: robot.pose, surface: scene.defaults };
+        let setup = scene.setup(robot.base, robot.pose);
         let file = urdf.display().to_string();
         let examined = examine_text((&file, &text), source.packages, setup);
         let report = examined.report(Severity::Warning, false);
@@ -126,7 +126,7 @@ impl Union<'_> {
     fn body(&mut self, scene: &Scene, body: &BodyEntry, source: Source) -> Result<(), String> {
         let told = |reason: String| format!("{}: {reason}", body.place);
         let base = if body.fixed { Base::Fixed } else { Base::Free };
-        let setup = Setup { base, base_pose: body.pose, surface: scene.defaults };
+        let setup = scene.setup(base, body.pose);
         // Mesh files are looked for beside the scene file.
         let file = scene.path.display().to_string();
         let read = |scale: f64| -> Result<(Model, Examined), String> {

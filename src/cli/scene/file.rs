@@ -44,6 +44,8 @@ pub(super) struct WorldSettings {
     pub gravity: Option<[f64; 3]>,
     /// implicit_midpoint, semi_implicit_euler or rk4.
     pub integrator: Option<String>,
+    /// rbx or rapier.
+    pub engine: Option<String>,
     /// Effects to switch.
     #[serde(default)]
     pub effects: BTreeMap<String, bool>,

@@ -7,6 +7,7 @@ mod ground;
 mod limits;
 mod start;
 
+use super::load::Setup;
 use crate::contact::Defaults;
 use crate::math::{Pose, Quat};
 use crate::model::{Base, Collider, EFFECT_NAMES};
@@ -101,6 +102,10 @@ impl Scene {
         Ok(Self { settings, given, robot, has_robot, base, effects, ground, robots, bodies, defaults, path })
     }
 
+    fn setup(&self, base: Base, base_pose: Pose) -> Setup {
+        Setup { base, base_pose, surface: self.defaults, engine: self.settings.engine }
+    }
+
     /// The flat ground z = 0, if the scene has none of its own.
     pub fn lay_ground(&mut self) {
         let defaults = self.defaults;
@@ -128,6 +133,7 @@ fn given(w: &WorldSettings) -> Vec<&'static str> {
         ("time_scale", w.time_scale.is_some()),
         ("gravity", w.gravity.is_some()),
         ("integrator", w.integrator.is_some()),
+        ("engine", w.engine.is_some()),
     ];
     all.into_iter().filter(|(_, given)| *given).map(|(name, _)| name).collect()
 }
@@ -217,6 +223,9 @@ fn settings(w: &WorldSettings) -> Result<Settings, String> {
     s.gravity = w.gravity.unwrap_or(s.gravity);
     if let Some(name) = &w.integrator {
         s.integrator = integrator(name)?;
+    }
+    if let Some(name) = &w.engine {
+        s.engine = engine(name)?;
     }
     s.check()?;
     Ok(s)

@@ -89,7 +89,8 @@ fn world_parameters() -> Vec<Definition> {
 fn start_parameters() -> Vec<Definition> {
     use When::{Always, Never, Start};
     vec![
-        define("engine", V::String("rbx".into()), Range::OneOf(&["rbx"]), "", Start).doc("Dynamics engine."),
+        define("engine", V::String(super::values::ENGINES[0].into()), Range::OneOf(&super::values::ENGINES), "", Always)
+            .doc("Dynamics engine. Another one goes on from the present state; building it takes some milliseconds."),
         define("base", V::String("fixed".into()), Range::OneOf(&["fixed", "free"]), "", Start)
             .doc("fixed: the root link is held on a test stand; free: it has six degrees of freedom."),
         define("scene", V::String(String::new()), Range::Any, "", Start)

@@ -9,6 +9,10 @@ use ros2_client::ParameterValue as V;
 /// Names of the integrators; the first one is the default.
 pub(super) const INTEGRATORS: [&str; 3] = [Integrator::NAMES[0].0, Integrator::NAMES[1].0, Integrator::NAMES[2].0];
 
+/// Names of the engines, built in or not; the first one is the default.
+pub(super) const ENGINES: [&str; EngineKind::NAMES.len()] =
+    [EngineKind::NAMES[0].0, EngineKind::NAMES[1].0, EngineKind::NAMES[2].0, EngineKind::NAMES[3].0];
+
 /// Every parameter with a value that its definition accepts.
 #[derive(Clone, Debug)]
 pub struct Values {
@@ -63,6 +67,7 @@ impl Values {
                 "time_scale" => V::Double(settings.time_scale),
                 "gravity" => V::DoubleArray(settings.gravity.to_vec()),
                 "integrator" => V::String(settings.integrator.name().into()),
+                "engine" => V::String(settings.engine.name().into()),
                 _ => continue,
             };
             if !self.given[index] {
@@ -244,6 +249,20 @@ mod tests {
         assert_eq!(values.tf_rate(), 10.0);
         assert!(values.set_running("tf_rate", V::Integer(10)).unwrap_err().contains("type double"));
         assert!(values.set_at_start("axes", V::StringArray(vec![])).unwrap_err().contains("read-only"));
+    }
+
+    #[test]
+    fn the_engine_may_change_while_running() {
+        let mut values = Values::default();
+        for (name, kind) in EngineKind::NAMES {
+            let set = values.set_running("engine", V::String(name.into()));
+            // One that is not built in says how to build it.
+            match kind.available() {
+                Ok(()) => assert_eq!(values.pace().settings.engine, kind),
+                Err(reason) => assert_eq!(set.unwrap_err(), reason),
+            }
+        }
+        assert!(values.set_running("engine", V::String("newton".into())).unwrap_err().contains("rapier"));
     }
 
     #[test]

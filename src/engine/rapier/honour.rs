@@ -1,0 +1,23 @@
+//! What rapier makes of a model that is not what the model says.
+
+use super::parts::embodied;
+use super::shapes::{is_approximate, shape};
+use crate::engine::honour::{Shortfall, name_of};
+use crate::model::Model;
+
+/// In the order of the model.
+pub fn shortfalls(m: &Model) -> Vec<Shortfall> {
+    let tell = |element, item: &str, instead: &str| Shortfall { element, item: item.into(), instead: instead.into() };
+    let light = embodied(m).map(|body| {
+        tell(name_of(m, body), "a body without mass or inertia", "it gets a little, so that rapier can move it")
+    });
+    let shapes = m.colliders.iter().filter(|_| m.effects.contact).filter_map(|c| {
+        let element = format!("link '{}'", c.name);
+        match shape(&c.form) {
+            None => Some(tell(element, "the shape", "it does not collide")),
+            Some(_) if is_approximate(&c.form) => Some(tell(element, "the round shape", "it collides as a polyhedron")),
+            Some(_) => None,
+        }
+    });
+    light.chain(shapes).collect()
+}
