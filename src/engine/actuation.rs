@@ -111,10 +111,11 @@ impl Actuation {
     pub fn refit(&mut self, m: &Model) {
         self.rates = vec![EulerRates::default(); m.eulers.len()];
         self.mobility = FreeMobility::new(m);
-        for (i, axis) in m.axes.iter().enumerate().filter(|(_, a)| matches!(a.slot, AxisSlot::Apart { .. })) {
-            self.effort[i] = 0.0;
-            (self.axes[i].memory, self.axes[i].stop, self.axes[i].piece) = (0, None, Piece::NONE);
-            debug_assert!(matches!(axis.slot, AxisSlot::Apart { .. }));
+        for (i, axis) in m.axes.iter().enumerate() {
+            if let AxisSlot::Apart { .. } = axis.slot {
+                self.effort[i] = 0.0;
+                (self.axes[i].memory, self.axes[i].stop, self.axes[i].piece) = (0, None, Piece::NONE);
+            }
         }
     }
 
