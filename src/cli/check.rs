@@ -1,19 +1,20 @@
 //! `realnoid check`: every finding with its line and mend.
 
-use super::load::{Source, examine};
-use super::scene::{Fault, Scene, Spare, assemble, inside};
+use super::load::{Setup, Source, examine_with};
+use super::scene::{Fault, Scene, Spare, assemble, engine, inside};
 use crate::description::render;
-use crate::math::Pose;
+use crate::engine::EngineKind;
 use crate::model::Base;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
 /// Prints every finding in the robot's text to standard output; failure if one of them is an
-/// error, or if the file cannot be read; then what is wrong with the scene, if one is given.
-pub fn run(source: Source, scene: Option<&Path>) -> ExitCode {
-    let scene = match scene.map(|path| Scene::read(Some(path))).transpose() {
-        Ok(scene) => scene,
+/// error, or if the file cannot be read; then what is wrong with the scene, if one is given. `name`: the engine for which it is checked,
+/// else that of the scene.
+pub fn run(source: Source, scene: Option<&Path>, name: Option<&str>) -> ExitCode {
+    let (scene, engine) = match chosen(scene, name) {
+        Ok(both) => both,
         Err(reason) => {
             eprintln!("error: {reason}");
             return ExitCode::FAILURE;
@@ -24,7 +25,7 @@ pub fn run(source: Source, scene: Option<&Path>) -> ExitCode {
     if let (None, Some(scene)) = (urdf, scene.as_ref().filter(|scene| scene.spare() == Spare::Nobody)) {
         return if is_sound(scene, source) { ExitCode::SUCCESS } else { ExitCode::FAILURE };
     }
-    match examine(source, Base::Fixed, Pose::identity()) {
+    match examine_with(source, Setup { base: Base::Fixed, engine, ..Setup::default() }) {
         Ok(examined) => {
             let mut out = std::io::stdout();
             let report = render(&examined.findings, &examined.file, &examined.text, out.is_terminal());
@@ -38,6 +39,16 @@ pub fn run(source: Source, scene: Option<&Path>) -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// The scene, with this engine, and the engine.
+fn chosen(scene: Option<&Path>, name: Option<&str>) -> Result<(Option<Scene>, EngineKind), String> {
+    let mut scene = scene.map(|path| Scene::read(Some(path))).transpose()?;
+    let own = scene.as_ref().map_or_else(EngineKind::default, |s| s.settings.engine);
+    let engine = name.map_or(Ok(own), engine)?;
+    engine.available()?;
+    scene.iter_mut().for_each(|s| s.settings.engine = engine);
+    Ok((scene, engine))
 }
 
 /// Says what is wrong with a scene around a sound robot, or odd about it.

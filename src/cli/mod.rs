@@ -26,7 +26,9 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse_from(own);
     match cli.command.unwrap_or(Command::Run { urdf: None, packages: Default::default() }) {
         Command::Run { urdf, packages } => run::start(packages.source(urdf.as_deref()), ros),
-        Command::Check { urdf, scene, packages } => check::run(packages.source(urdf.as_deref()), scene.as_deref()),
+        Command::Check { urdf, scene, engine, packages } => {
+            check::run(packages.source(urdf.as_deref()), scene.as_deref(), engine.as_deref())
+        }
         Command::Inspect(args) => inspect::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Bench(args) => bench::run(&args),

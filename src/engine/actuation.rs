@@ -119,10 +119,11 @@ impl Actuation {
     pub fn refit(&mut self, m: &Model) {
         self.rates = vec![EulerRates::default(); m.eulers.len()];
         self.mobility = FreeMobility::new(m);
-        for (i, axis) in m.axes.iter().enumerate().filter(|(_, a)| matches!(a.slot, AxisSlot::Apart { .. })) {
-            self.effort[i] = 0.0;
-            (self.axes[i].memory, self.axes[i].stop, self.axes[i].piece) = (0, None, Piece::NONE);
-            debug_assert!(matches!(axis.slot, AxisSlot::Apart { .. }));
+        for (i, axis) in m.axes.iter().enumerate() {
+            if let AxisSlot::Apart { .. } = axis.slot {
+                self.effort[i] = 0.0;
+                (self.axes[i].memory, self.axes[i].stop, self.axes[i].piece) = (0, None, Piece::NONE);
+            }
         }
     }
 
@@ -191,11 +192,11 @@ impl Actuation {
     /// Ends a step, or a part of it, with this state. `motors`: per axis, what its motor gave on average, N·m or N.
     pub fn finish(&mut self, m: &Model, start: (f64, f64), state: &State, motors: &[f64]) {
         let (h, whole) = start;
-        for i in 0..self.axes.len() {
-            let ((q, v), at) = (state.axis(m, i), &mut self.axes[i]);
+        for (i, (at, motor)) in self.axes.iter_mut().zip(motors).enumerate() {
+            let (q, v) = state.axis(m, i);
             let (way, mean) = (q - at.q, (q - at.q) / h);
             at.acceleration = (v - at.v) / h;
-            let total = at.motor(h).torque + motors[i] + at.rotor * at.acceleration;
+            let total = at.motor(h).torque + motor + at.rotor * at.acceleration;
             let (effort, memory) = at.law.outcome(&at.piece, total, mean);
             at.missing = at.still_missing(total, v);
             at.memory = memory;
@@ -262,5 +263,5 @@ const AHEAD: f64 = 2.0;
 
 fn hard_stop(axis: &Axis, q: f64, effects: Effects) -> Option<[f64; 2]> {
     let bounded = axis.lower.is_finite() || axis.upper.is_finite();
-    (effects.limits && bounded && axis.stop.cfm == 0.0).then(|| [axis.lower - q, axis.upper - q])
+    (effects.limits && bounded && axis.stop.cfm == 0.0).then_some([axis.lower - q, axis.upper - q])
 }

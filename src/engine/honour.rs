@@ -2,7 +2,7 @@
 
 use super::EngineKind;
 use crate::description::{Description, Finding, Position, Severity};
-use crate::model::{LinkFrame, Model};
+use crate::model::{LinkFrame, LinkInfo, Model};
 
 /// An item of a model that an engine does not honour.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +38,10 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
     }
     if !can.softness {
         for soft in m.softs.iter().filter(|s| s.softness.cfm > 0.0) {
-            let element = m.body_of(soft.v).map_or_else(String::new, |body| name_of(m, body));
+            let body = m.body_of(soft.v).unwrap_or(0);
+            let behind = (body..m.bodies.len()).find(|b| carries_link(m, *b)).unwrap_or(body);
+            let own = (0..m.axes.len()).find(|axis| m.carrier(*axis) == Some(behind));
+            let element = own.map_or_else(|| name_of(m, body), |axis| joint(&m.axes[axis].name));
             tell(element, "<constraint cfm>", "the joint is hard");
         }
     }
@@ -65,14 +68,18 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
     found
 }
 
-/// The link that a body carries, or the joint in front of it.
+/// The link on a body, or the first one behind it.
 pub(super) fn name_of(m: &Model, body: usize) -> String {
-    let carried = |b: usize| m.links.iter().find(|l| matches!(l.frame, LinkFrame::OnBody { body, .. } if body == b));
-    let mut at = body;
-    while carried(at).is_none() && at + 1 < m.bodies.len() {
-        at += 1;
-    }
-    carried(at).map_or_else(|| format!("body {body}"), |l| format!("link '{}'", l.name))
+    let behind = (body..m.bodies.len()).find_map(|b| link_on(m, b));
+    behind.map_or_else(|| format!("body {body}"), |l| format!("link '{}'", l.name))
+}
+
+fn carries_link(m: &Model, body: usize) -> bool {
+    link_on(m, body).is_some()
+}
+
+fn link_on(m: &Model, body: usize) -> Option<&LinkInfo> {
+    m.links.iter().find(|l| matches!(l.frame, LinkFrame::OnBody { body: b, .. } if b == body))
 }
 
 /// What stands in a text and has no effect in an engine: a warning for each kind of item, with the engine, the elements and the

@@ -132,7 +132,7 @@ fn what_an_engine_cannot_is_said_at_load_time() {
         };
         let can = engine.capabilities();
         assert_eq!(about("<mimic>", "'follow'"), !can.couplings, "{}", engine.name());
-        assert_eq!(about("<constraint cfm>", "'a'"), !can.softness, "{}", engine.name());
+        assert_eq!(about("<constraint cfm>", "'lead'"), !can.softness, "{}", engine.name());
         assert!(told.is_sound());
     }
 }

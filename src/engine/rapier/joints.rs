@@ -142,8 +142,9 @@ impl Rows {
             row.length = g.dot(g).sqrt();
             let piece = laws.motor(i, h);
             row.set_motor(sim, g, &piece);
-            if let Some(stop) = laws.stop(i) {
-                row.set_stop(sim, (m, k), g, (state.axis(m, i).0, stop));
+            match laws.stop(i) {
+                Some(stop) => row.set_stop(sim, k, g, (state.axis(m, i).0, stop)),
+                None => row.lift_stop(sim),
             }
             row.push(k, g * piece.torque, loads);
         }
@@ -230,14 +231,14 @@ impl Row {
     }
 
     /// The range about the present position `q` that rapier watches, in its measure.
-    fn set_stop(&self, sim: &mut Sim, at: (&Model, &Kinematics), g: V3<f64>, (q, [low, high]): (f64, [f64; 2])) {
+    fn set_stop(&self, sim: &mut Sim, k: &Kinematics, g: V3<f64>, (q, [low, high]): (f64, [f64; 2])) {
         let Some(joint) = self.stop.and_then(|stop| sim.joints.get_mut(stop, false)) else { return };
         joint.data.limit_axes = JointAxesMask::from(self.axis);
         let reach = if let Along::Slide = self.along { f64::INFINITY } else { REACH };
         let (mut from, mut to) = (low.max(-reach).min(reach), high.min(reach).max(-reach));
         if let Along::Angle { .. } = self.along {
             let turned = facing(g * (1.0 / self.length));
-            let (k, child) = (at.1, self.child);
+            let child = self.child;
             joint.data.local_frame1 = frame(&turned, V3::default());
             let relative = super::super::maximal::transposed_times(&k.r[self.parent], &k.r[child]);
             joint.data.local_frame2 = frame(&relative.mm(&turned), V3::default());
@@ -248,6 +249,13 @@ impl Row {
         let limits = if self.swapped { [-to, -from] } else { [from, to] };
         let own = &mut joint.data.limits[self.axis as usize];
         (own.min, own.max) = (limits[0].max(f64::MIN), limits[1].min(f64::MAX));
+    }
+
+    /// No stop in this step: of H at the pole, where it is no axis of its own.
+    fn lift_stop(&self, sim: &mut Sim) {
+        if let Some(joint) = self.stop.and_then(|stop| sim.joints.get_mut(stop, false)) {
+            joint.data.limit_axes = JointAxesMask::empty();
+        }
     }
 
     /// Adds a constant torque, in the child's frame, to child and parent.
