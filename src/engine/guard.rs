@@ -57,8 +57,14 @@ impl Guard {
 }
 
 impl Rbx {
-    /// Slows the state down to the energy that it may have, coming from `mid.start`.
-    pub(super) fn guard(&mut self, m: &Model, mid: &mut Midpoint, gravity: [f64; 3], report: &mut StepReport) {
+    /// Slows the state down to the energy that it may have, coming from `mid.start`, if that is a share of its speeds below `least`.
+    pub(super) fn guard(
+        &mut self,
+        m: &Model,
+        mid: &mut Midpoint,
+        (gravity, least): ([f64; 3], f64),
+        report: &mut StepReport,
+    ) {
         let mut before = mid.guard.energy(m, &mid.start, gravity);
         let mut after = mid.guard.energy(m, &self.state, gravity);
         before.kinetic += mid.start.rotor_energy(m, self.axes.rotors());
@@ -70,7 +76,7 @@ impl Rbx {
         // share² · rest = held + share · by_end
         let root = (by_end * by_end + 4.0 * rest * held.max(0.0)).sqrt();
         let share = if rest > 0.0 { (by_end + root) / (2.0 * rest) } else { 1.0 };
-        if !(0.0..1.0).contains(&share) {
+        if !(0.0..least).contains(&share) {
             return;
         }
         report.guarded += 1;

@@ -27,6 +27,8 @@ const COARSE: f64 = 1e-6;
 const ENOUGH: u32 = 5;
 /// The same for a step whose axes do not all fit their laws: shorter ones would not make them fit.
 const ROUGH: f64 = 1e-2;
+/// A piece of a halved step whose motion would have to be slowed down by less than this share is as it should be.
+const RESOLVED: f64 = 1e-4;
 /// A step is halved at most this many times.
 pub(super) const DEEPEST: u32 = 6;
 
@@ -111,7 +113,7 @@ impl Rbx {
                     report.unsettled |= matches!(end, End::Unsettled);
                     self.take(m, mid, (part.h, part.gravity));
                     if depth > 0 && report.halvings > 0 {
-                        self.guard(m, mid, part.gravity, report);
+                        self.guard(m, mid, (part.gravity, 1.0 - RESOLVED), report);
                     }
                     let owed = self.pay(m, &mid.start, part.gravity, report);
                     report.trimmed_energy += self.lower(m, mid, part.h, (part.gravity, owed));
@@ -119,7 +121,7 @@ impl Rbx {
                 End::NoContraction => {
                     report.unsettled = true;
                     self.explicit_piece(m, mid, commands, &part);
-                    self.guard(m, mid, part.gravity, report);
+                    self.guard(m, mid, (part.gravity, 1.0), report);
                     self.pay(m, &mid.start, part.gravity, report);
                 }
             }

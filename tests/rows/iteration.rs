@@ -2,7 +2,7 @@
 
 use crate::support::Random;
 use nalgebra::{DMatrix, DVector};
-use realnoid::solver::{Kind, Rows};
+use realnoid::solver::{FINISH_ROWS, Kind, Rows};
 
 /// Relative residual that is asked for.
 const AIM: f64 = 1e-11;
@@ -64,8 +64,8 @@ fn equalities_agree_with_the_dense_solution() {
         assert!(warm.within(AIM) && warm.sweeps <= 2 && warm.tries <= 1, "{warm:?}");
     }
     // Without the finish (too many rows for it): sweeps alone, linear convergence.
-    let p = Problem::random(80, 1e2, &mut Random(4));
-    let mut rows = p.rows(&[(Kind::EQUALITY, 1); 80]);
+    let p = Problem::random(FINISH_ROWS + 20, 1e2, &mut Random(4));
+    let mut rows = p.rows(&[(Kind::EQUALITY, 1); FINISH_ROWS + 20]);
     let rough = rows.solve(10, AIM);
     let fine = rows.solve(2000, AIM);
     assert!(rough.tries == 0 && fine.tries == 0 && fine.residual < 0.1 * rough.residual, "{rough:?} {fine:?}");
