@@ -35,7 +35,7 @@ pub enum Command {
         /// A scene file, checked with the robot in it.
         #[arg(long)]
         scene: Option<PathBuf>,
-        /// For this engine: what it does not honour is told. rbx or rapier; rbx unless the scene says otherwise.
+        /// For this engine: what it does not honour is told. rbx, rapier or bullet; rbx unless the scene says otherwise.
         #[arg(long)]
         engine: Option<String>,
         /// `--package`.

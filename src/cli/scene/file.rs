@@ -44,7 +44,7 @@ pub(super) struct WorldSettings {
     pub gravity: Option<[f64; 3]>,
     /// implicit_midpoint, semi_implicit_euler or rk4.
     pub integrator: Option<String>,
-    /// rbx or rapier.
+    /// rbx, rapier or bullet.
     pub engine: Option<String>,
     /// Effects to switch.
     #[serde(default)]
