@@ -97,13 +97,13 @@ pub struct AxisSet {
     pub(super) damped: (f64, f64),
     /// By how much an axis was outside its range at most, at the start of a step; rad or m.
     pub worst_stop: f64,
-    /// Per axis: is it a row beside contacts?
+    /// Per axis: is it a row beside contacts? Empty if nothing can touch.
     pub(super) contests: Vec<Contest>,
     /// Pass of the step.
     passes: u32,
     /// Step of the last pass, s.
     pub(super) h: f64,
-    /// Per axis: its tree is out of the computation.
+    /// Per axis: its tree is out of the computation. Empty if nothing ever rests.
     pub resting: Vec<bool>,
     pub(super) mean: bool,
     /// Sweeps over the rows of contacts, at most.
@@ -128,6 +128,8 @@ impl AxisSet {
     /// Room for this model.
     pub fn new(model: &Model) -> Self {
         let n = model.axes.len();
+        let couplings = Couplings::new(model);
+        let contested = if couplings.as_ref().is_some_and(|c| c.contacts().is_some()) { n } else { 0 };
         Self {
             drives: model.axes.iter().map(|a| a.drive).collect(),
             laws: vec![Law::default(); n],
@@ -144,16 +146,16 @@ impl AxisSet {
             turning: vec![0.0; n],
             weight: vec![1.0; model.nv],
             effort: vec![0.0; n],
-            couplings: Couplings::new(model),
+            couplings,
             answers: Some(Box::new(Answers::new(model))),
             work: Work::default(),
             paid: vec![(0.0, 0.0); n + model.softs.len()],
             damped: (0.0, 0.0),
             worst_stop: 0.0,
-            contests: vec![Contest::default(); n],
+            contests: vec![Contest::default(); contested],
             passes: 0,
             h: 0.0,
-            resting: vec![false; n],
+            resting: vec![false; if model.effects.deactivation { n } else { 0 }],
             mean: false,
             sweeps: 1,
             best: usize::MAX,
@@ -181,7 +183,7 @@ impl AxisSet {
         (self.passes, self.h) = (0, start.h);
         self.contests.fill(Contest::default());
         for (i, axis) in m.axes.iter().enumerate() {
-            if self.resting[i] {
+            if self.rests(i) {
                 continue;
             }
             let (q, v) = self.axis_state(m, axis, start.state);
@@ -211,6 +213,12 @@ impl AxisSet {
         self.start_couplings(m, start);
         self.set_weights(m);
         at_pole
+    }
+
+    /// Is the tree of an axis out of the computation?
+    #[inline(always)]
+    pub(super) fn rests(&self, axis: usize) -> bool {
+        self.resting.get(axis) == Some(&true)
     }
 
     /// At the pole of a group, H has no torque of its own: it turns about the same line as B. Nothing acts on an axis whose
@@ -281,10 +289,10 @@ impl AxisSet {
         let (mut count, mut breaking) = (0, 0);
         for (i, axis) in m.axes.iter().enumerate() {
             self.moves[i] = 0;
-            if self.resting[i] {
+            if self.rests(i) {
                 continue;
             }
-            if self.contests[i].on {
+            if self.is_contested(i) {
                 let end = self.speed[i] + h * self.axis_rate(m, axis, qdd);
                 self.moves[i] = self.leaves_contest(i, end);
                 count += usize::from(self.moves[i] != 0);
@@ -352,7 +360,7 @@ impl AxisSet {
         self.settle_contests();
         self.damped = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
-            if self.resting[i] {
+            if self.rests(i) {
                 continue;
             }
             let (law, place) = (&self.laws[i], self.place[i]);

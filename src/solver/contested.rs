@@ -26,15 +26,21 @@ pub(super) struct Contest {
 }
 
 impl AxisSet {
+    /// Is an axis a row?
+    #[inline(always)]
+    pub(super) fn is_contested(&self, axis: usize) -> bool {
+        self.contests.get(axis).is_some_and(|c| c.on)
+    }
+
     /// Puts an axis, that leaves its place to this side, on the riser there, as a row. False if there is no riser.
     pub(super) fn contest(&mut self, axis: usize, side: isize) -> bool {
         let place = self.place[axis];
-        let (next, law) = (self.laws[axis].neighbour(place, side), &mut self.laws[axis]);
-        let riser = if place % 2 == 1 && !self.contests[axis].on { place } else { next };
+        let next = self.laws[axis].neighbour(place, side);
+        let riser = if place % 2 == 1 && !self.is_contested(axis) { place } else { next };
         if riser % 2 == 0 {
             return false;
         }
-        law.hold(riser);
+        self.laws[axis].hold(riser);
         self.place[axis] = riser;
         self.at_end[axis] = true;
         self.contests[axis] = Contest { on: true, ..Contest::default() };
@@ -63,7 +69,7 @@ impl AxisSet {
         (q, h, qdd): (&[f64], f64, &[f64]),
     ) {
         for axis in 0..m.axes.len() {
-            if !self.contests[axis].on {
+            if !self.is_contested(axis) {
                 continue;
             }
             let Some(seat) = Seat::of(m, axis) else { continue };

@@ -18,10 +18,10 @@ impl AxisSet {
     pub(super) fn write_inputs(&mut self, m: &Model, ws: &mut Workspace<f64>, h: f64) {
         clear_balls(ws);
         for i in 0..m.axes.len() {
-            if self.resting[i] {
+            if self.rests(i) {
                 continue;
             }
-            if self.contests[i].on {
+            if self.is_contested(i) {
                 let input = self.contested_input(i, h);
                 self.write(m, ws, i, input);
                 continue;
@@ -64,7 +64,7 @@ impl AxisSet {
 
     /// Torque of the law that keeps a standing axis to its acceleration: what its joint needs, and its rotor.
     pub(super) fn riser_torque(&self, m: &Model, ws: &Workspace<f64>, i: usize, qdd: &[f64]) -> f64 {
-        if self.contests[i].on {
+        if self.is_contested(i) {
             return self.contested_torque(i, self.h);
         }
         let rotor = match self.rotor[i] {

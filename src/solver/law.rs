@@ -254,6 +254,7 @@ impl Law {
     }
 
     /// First place: the riser it stood on, else by its speed.
+    #[inline]
     pub(super) fn guess(&self, v: f64, memory: u8) -> usize {
         let knots = &self.knots[..self.count];
         let riser = |k: &usize| self.is_riser(*k);
@@ -269,6 +270,7 @@ impl Law {
     }
 
     /// To which side the solution leaves riser `k`, whose law must give this torque: −1 left, 0 not at all, +1 right.
+    #[inline]
     pub(super) fn leaves_riser(&self, k: usize, torque: f64) -> isize {
         let (left, right) = self.ends(k);
         let slack = FIT * (1.0 + torque.abs()) + if self.knots[k].kinds & FRICTION != 0 { self.stiction } else { 0.0 };
@@ -276,6 +278,7 @@ impl Law {
     }
 
     /// To which side a speed is beyond segment `j`: −1, 0, +1.
+    #[inline]
     pub(super) fn leaves_segment(&self, j: usize, v: f64) -> isize {
         let slack = FIT * (1.0 + v.abs());
         let below = j > 0 && v < self.knots[j - 1].speed - slack;
@@ -284,6 +287,7 @@ impl Law {
     }
 
     /// A speed that fits this place, without the rounding that made it fit only nearly.
+    #[inline]
     pub(super) fn rounded(&self, place: usize, v: f64) -> f64 {
         let j = place / 2;
         if place % 2 == 1 {

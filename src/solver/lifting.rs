@@ -101,7 +101,7 @@ impl AxisSet {
         let before = c.reached.len();
         for (i, axis) in m.axes.iter().enumerate() {
             let (law, by) = (&self.laws[i], self.axis_rate(m, axis, lift));
-            if by == 0.0 || !law.has_stop() || self.resting[i] {
+            if by == 0.0 || !law.has_stop() || self.rests(i) {
                 continue;
             }
             let share = if self.at_end[i] || !self.mean { 1.0 } else { 0.5 };
