@@ -46,21 +46,22 @@ fn engines() -> Vec<&'static str> {
     EngineKind::built().map(EngineKind::name).collect()
 }
 
-/// The longest step in which an engine moves bodies with one velocity, s, for steps of `h` with `substeps` of rapier.
+/// The longest step in which an engine moves bodies with the velocity at its end, s, for steps of `h` with `substeps` of rapier.
 fn explicit_step(engine: &str, h: f64, substeps: f64) -> f64 {
-    match engine {
-        "rbx" => 0.0,
-        "rapier" => h / substeps,
-        _ => h,
-    }
+    if engine == "rapier" { h / substeps } else { 0.0 }
 }
 
-/// Semi-implicit Euler is g t δ/2 below the parabola, where the other integrators are on it; the velocity is the same.
+/// A number of the output. serde_json reads some one unit in the last place beside what is written.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 2.0 * f64::EPSILON * b.abs()
+}
+
+/// Semi-implicit Euler is g t δ/2 below the parabola; Bullet's leapfrog and rbx are on it. The velocity is the same.
 #[test]
 fn free_fall_parts_as_theory_says() {
     let folder = TempDir::new().unwrap();
     let scene = written(&folder, "ball.yaml", BALL);
-    let all = compared(&["--scene", &scene, "--duration", "1", "--within", "1e-4"]);
+    let all = compared(&["--scene", &scene, "--duration", "1", "--within", "5e-5"]);
     let z = |run: &Value| run["links"]["ball"][2].as_f64().unwrap();
     let expected: Vec<&str> = ["reference", "reference/2"].into_iter().chain(engines()).collect();
     assert_eq!(names(&all), expected);
@@ -77,11 +78,11 @@ fn free_fall_parts_as_theory_says() {
         assert!((energy - 2.0 * G * rate).abs() <= 2e-3 * G * rate + 1e-7, "{engine}: {energy} J");
         assert!(d["momentum"]["linear"].as_f64().unwrap() < 2e-9 && d["axes"].is_null(), "{engine}: {d}");
         match &d["positions"]["beyond"] {
-            Value::Null => assert!(rate < 1e-4, "{engine}"),
+            Value::Null => assert!(rate < 5e-5, "{engine}"),
             beyond => {
                 // The first millisecond after.
                 let at = beyond["at"].as_f64().unwrap();
-                assert!(at > 1e-4 / rate && at <= 1e-4 / rate + 1e-3 && beyond["of"] == "ball", "{engine}: {beyond}");
+                assert!(at > 5e-5 / rate && at <= 5e-5 / rate + 1e-3 && beyond["of"] == "ball", "{engine}: {beyond}");
             }
         }
     }
@@ -108,7 +109,7 @@ fn the_chain_ends_where_the_reference_does() {
     assert_eq!(run(&all, "rapier")["not_honoured"][0]["item"], "integrator rk4");
 }
 
-/// The reference is what `simulate` makes with so many steps, bit for bit; every run follows the script.
+/// The reference is what `simulate` makes with so many steps, to the last digit; every run follows the script.
 #[test]
 fn the_reference_is_a_run_of_rbx_under_the_same_script() {
     let folder = TempDir::new().unwrap();
@@ -126,7 +127,7 @@ fn the_reference_is_a_run_of_rbx_under_the_same_script() {
     for axis in ["hip", "knee", "ankle"] {
         let column = head.iter().position(|h| *h == format!("{axis}.position")).unwrap();
         let position: f64 = last[column].parse().unwrap();
-        assert_eq!(run(&all, "reference")["axes"][axis].as_f64().unwrap(), position);
+        assert!(same(run(&all, "reference")["axes"][axis].as_f64().unwrap(), position), "{axis}");
         assert!(position != 0.0);
         for engine in engines() {
             let x = run(&all, engine)["axes"][axis].as_f64().unwrap();
@@ -189,8 +190,9 @@ fn files_have_every_run_over_time() {
     for name in names(&all).into_iter().skip(1) {
         let at = |column: &str| rows[50][head.iter().position(|h| *h == format!("{name}.{column}")).unwrap()];
         let run = run(&all, name);
-        assert_eq!(at("positions"), run["differences"]["positions"]["final"]["value"].as_f64().unwrap());
-        assert_eq!(at("energy"), run["energy"].as_f64().unwrap());
+        let last = &run["differences"]["positions"]["final"]["value"];
+        assert!(same(last.as_f64().unwrap(), at("positions")), "{name}");
+        assert!(same(run["energy"].as_f64().unwrap(), at("energy")), "{name}");
         assert!((at("pz") + 2.0 * G * 0.5).abs() < 1e-8, "{name}: {}", at("pz"));
     }
     picture(&fs::read_to_string(&svg).unwrap(), &names(&all)[1..]);
@@ -252,4 +254,30 @@ fn no_time_at_all_is_no_difference() {
             assert!(greatest < 1e-12, "{kind}: {greatest}");
         }
     }
+}
+
+/// Two hinges at 45° with no mass between them: rbx and rapier take them, Bullet does not.
+#[cfg(feature = "bullet")]
+#[test]
+fn an_engine_that_cannot_take_the_scene_is_left_out_and_told() {
+    let folder = TempDir::new().unwrap();
+    let joint = |name: &str, parent: &str, child: &str, axis: &str| {
+        format!(
+            "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/><axis xyz='{axis}'/></joint>"
+        )
+    };
+    let arm = "<inertial><origin xyz='0.1 0 0.1'/><mass value='1'/>\
+               <inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial>";
+    let (first, second) = (joint("first", "base", "a", "0 1 0"), joint("second", "a", "b", "0 0.70710678 0.70710678"));
+    let text = format!(
+        "<robot name='skew'><link name='base'/><link name='a'/><link name='b'>{arm}</link>{first}{second}</robot>"
+    );
+    let urdf = written(&folder, "skew.urdf", &text);
+    let all = compared(&[&urdf, "--duration", "0.01"]);
+    assert!(!names(&all).contains(&"bullet") && names(&all).contains(&"rapier"));
+    let said = all["warnings"].as_array().unwrap().iter().filter_map(Value::as_str);
+    assert!(said.into_iter().any(|w| w.starts_with("left out: bullet: ")), "{}", all["warnings"]);
+    let named = realnoid("compare", &[&urdf, "--duration", "0.01", "--engine", "bullet"]);
+    assert_eq!(named.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&named.stderr).contains("error: bullet: "));
 }

@@ -28,8 +28,8 @@ const FINER: u32 = 64;
 /// Names of these two runs.
 const REFERENCE: [&str; 2] = ["reference", "reference/2"];
 
-/// Runs; prints tables or JSON to standard output. Exit codes: 0 all finite; 1 not finite, stopped by a signal, robot not loaded, an engine that cannot take
-/// the scene, output not written; 2 wrong arguments or scene.
+/// Runs; prints tables or JSON to standard output. Exit codes: 0 all finite; 1 not finite, stopped by a signal, robot not loaded, a named engine that cannot
+/// take the scene, output not written; 2 wrong arguments or scene.
 pub fn run(args: &CompareArgs) -> ExitCode {
     match Contest::new(args).and_then(|mut contest| contest.run(args).map_err(|reason| (1, reason))) {
         Ok(code) => code,
@@ -68,7 +68,7 @@ impl Contest {
         }
         let kinds = kinds(&args.engine).map_err(usage)?;
         // What an engine does not honour is told of each, later; rbx honours it all.
-        let Start { world, script, intervals, every, warnings } =
+        let Start { world, script, intervals, every, mut warnings } =
             Start::new(&args.run, Some(EngineKind::Rbx.name()), args.every)?;
         let model = world.model().clone();
         let fine = |name, finer| Contender::fine(name, &world, &script, finer).map_err(usage);
@@ -76,9 +76,14 @@ impl Contest {
         let settings = *world.settings();
         let contender =
             |kind: EngineKind| Contender::new(kind.name(), &world, &script, Settings { engine: kind, ..settings });
-        let engines: Result<Vec<_>, String> = kinds.into_iter().map(contender).collect();
         let mut others = vec![half];
-        others.extend(engines.map_err(|reason| (1, reason))?);
+        for made in kinds.into_iter().map(contender) {
+            match made {
+                Ok(run) => others.push(run),
+                Err(reason) if args.engine.is_empty() => warnings.push(format!("left out: {reason}")),
+                Err(reason) => return Err((1, reason)),
+            }
+        }
         let names = std::iter::once(&reference).chain(&others).map(|c| c.name.clone()).collect();
         let (links, floats) = (moving_links(&model), !floating_bodies(&model).is_empty());
         let rows = Rows { names, ..Rows::default() };

@@ -29,10 +29,13 @@ const COLORS: [RGBColor; 6] = [
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// One panel: what is above it, and its value of a run (the first argument is the reference).
+/// Of a run; the first row is the reference's.
+type Value = Box<dyn Fn(&Row, &Row) -> f64>;
+
+/// One panel: what is above it, and what it shows.
 struct Panel {
     title: String,
-    value: Box<dyn Fn(&Row, &Row) -> f64>,
+    value: Value,
     /// It has the bound of `--within`.
     bounded: bool,
 }
