@@ -50,6 +50,10 @@ pub enum Command {
     /// the output not be written. 2: an argument or the scene is wrong. A run that diverges or is stopped leaves a
     /// complete file.
     Simulate(Box<SimulateArgs>),
+    /// The engines side by side on one scene: how far each gets from a run of rbx with steps 64 times finer, and why.
+    ///
+    /// Exit codes as those of simulate.
+    Compare(Box<CompareArgs>),
     /// Time per call of kinematics, rnea, crba, aba and step: medians, thread CPU time.
     Bench(BenchArgs),
     /// Forward dynamics of single states, to compare with other programs: one JSON object per line on standard input
@@ -159,9 +163,9 @@ pub struct EvaluateArgs {
     pub gravity: String,
 }
 
-/// `simulate`: the fixed contract of DESIGN §1.
+/// What is simulated, from which start, under which commands, and for how long.
 #[derive(Debug, Args)]
-pub struct SimulateArgs {
+pub struct RunArgs {
     /// URDF file; without one, that of the scene.
     #[arg(required_unless_present = "scene")]
     pub urdf: Option<PathBuf>,
@@ -189,9 +193,6 @@ pub struct SimulateArgs {
     /// implicit_midpoint, semi_implicit_euler or rk4.
     #[arg(long)]
     pub integrator: Option<String>,
-    /// rbx, rapier or bullet (a cargo feature); rbx unless the scene says otherwise.
-    #[arg(long)]
-    pub engine: Option<String>,
     /// m/s², world frame; 0,0,-9.80665 unless the scene says otherwise.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
@@ -226,9 +227,6 @@ pub struct SimulateArgs {
     /// is. Entries are in the order of time; one inside a control interval takes effect with the next interval.
     #[arg(long, value_name = "FILE.yaml")]
     pub script: Option<PathBuf>,
-    /// Time between two rows, s: a whole multiple of the control interval, which it is if not given.
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    pub every: Option<f64>,
     /// Switch an effect off: gravity, damping, friction, limits, drives, rotor_inertia, compliance, mimic, breaking,
     /// body_damping, contact, deactivation.
     #[arg(long, value_name = "EFFECT")]
@@ -236,6 +234,20 @@ pub struct SimulateArgs {
     /// Switch an effect on.
     #[arg(long, value_name = "EFFECT")]
     pub on: Vec<String>,
+}
+
+/// `simulate`: the fixed contract of DESIGN §1.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// What is simulated.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// rbx, rapier or bullet (a cargo feature); rbx unless the scene says otherwise.
+    #[arg(long)]
+    pub engine: Option<String>,
+    /// Time between two rows, s: a whole multiple of the control interval, which it is if not given.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub every: Option<f64>,
     /// Where the rows go: FILE.csv or FILE.mcap; its folder is made if it does not exist.
     ///
     /// FILE.mcap is a bag of ROS 2 messages: /clock, /joint_states and, for a free base, /odom. In a new or empty folder
@@ -247,6 +259,32 @@ pub struct SimulateArgs {
     /// the first to the second, depth (m) and force on the second (N, averaged over the last step), in the world frame.
     #[arg(long, value_name = "FILE.csv")]
     pub contacts: Option<PathBuf>,
+}
+
+/// `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// What is simulated.
+    #[command(flatten)]
+    pub run: RunArgs,
+    /// An engine to compare; as often as needed. All that this program was built with, if none is given.
+    #[arg(long, value_name = "NAME")]
+    pub engine: Vec<String>,
+    /// The difference (rad or m) of which it is told when it is first exceeded.
+    #[arg(long, value_name = "X", default_value_t = 0.001, allow_negative_numbers = true)]
+    pub within: f64,
+    /// Time between two rows of `--csv` and points of `--svg`, s: a whole multiple of the control interval, which it is if not given.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub every: Option<f64>,
+    /// Differences, energy, momentum, penetration, joint drift and CPU time of every run over time.
+    #[arg(long, value_name = "FILE.csv")]
+    pub csv: Option<PathBuf>,
+    /// The differences over time as a picture.
+    #[arg(long, value_name = "FILE.svg")]
+    pub svg: Option<PathBuf>,
+    /// JSON instead of tables; it also has where everything is at the end.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `N` numbers separated by commas.

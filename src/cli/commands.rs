@@ -1,6 +1,6 @@
 //! Commands of `simulate` that hold from the start: `--effort`, `--servo`, `--turn`.
 
-use super::args::{SimulateArgs, assignment};
+use super::args::{RunArgs, assignment};
 use crate::model::Model;
 use crate::world::{AxisCommand, Mode, Side, World};
 
@@ -19,7 +19,7 @@ pub fn axis(m: &Model, place: &str, name: &str) -> Result<usize, String> {
 ///
 /// # Errors
 /// Names the flag and what is wrong with it.
-pub fn turn(args: &SimulateArgs, world: &mut World) -> Result<(), String> {
+pub fn turn(args: &RunArgs, world: &mut World) -> Result<(), String> {
     for text in &args.turn {
         let form = "AXIS=POSITION";
         let (name, values) = assignment("--turn", form, text)?;
@@ -38,7 +38,7 @@ pub fn turn(args: &SimulateArgs, world: &mut World) -> Result<(), String> {
 ///
 /// # Errors
 /// Names the flag and what is wrong with it.
-pub fn command(args: &SimulateArgs, world: &mut World) -> Result<(), String> {
+pub fn command(args: &RunArgs, world: &mut World) -> Result<(), String> {
     let model = world.model().clone();
     let (mut commands, mut taken) = (world.commands().to_vec(), Vec::new());
     let efforts = args.effort.iter().map(|text| ("--effort", "AXIS=TORQUE[,SPEED]", text, effort as Make));

@@ -4,6 +4,7 @@ pub mod args;
 pub mod bench;
 pub mod check;
 pub mod commands;
+pub mod compare;
 pub mod drawing;
 mod drop;
 pub mod evaluate;
@@ -31,6 +32,7 @@ pub fn main() -> ExitCode {
         }
         Command::Inspect(args) => inspect::run(&args),
         Command::Simulate(args) => simulate::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Evaluate(args) => evaluate::run(&args),
     }

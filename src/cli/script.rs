@@ -1,4 +1,4 @@
-//! `simulate --script`: commands over time (J-13, J-14), in YAML. Unknown keys are refused, with their line.
+//! `--script`: commands over time (J-13, J-14), in YAML. Unknown keys are refused, with their line.
 
 use super::commands::{axis, refusal};
 use crate::description::Description;
@@ -45,7 +45,7 @@ struct Entry {
 }
 
 /// A checked script.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Script {
     /// In the order of time.
     events: Vec<Event>,
@@ -55,7 +55,7 @@ pub struct Script {
 }
 
 /// What an axis is told, as a whole.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Event {
     /// Before this control interval.
     interval: u64,

@@ -1,6 +1,6 @@
 //! `realnoid simulate`: no ROS, as fast as it goes.
 
-use super::args::{SimulateArgs, assignment, numbers};
+use super::args::{RunArgs, SimulateArgs, assignment, numbers};
 use super::commands::{self, axis};
 use super::load::Loaded;
 use super::outcome::{Outcome, Peak, Progress, counted};
@@ -25,6 +25,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Set by SIGINT and SIGTERM: the run ends early, its file is completed.
 static STOP: AtomicBool = AtomicBool::new(false);
+
+/// From here on, SIGINT and SIGTERM only set what [`stopped`] tells.
+pub(super) fn catch_signals() {
+    // Without the handler the run only loses its neat end.
+    let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+}
+
+/// Has a signal come?
+pub(super) fn stopped() -> bool {
+    STOP.load(Ordering::Relaxed)
+}
 
 /// Runs; prints the summary to standard output. Exit codes: 0 all finite; 1 not finite, stopped by a signal, robot not
 /// loaded, output not written; 2 wrong arguments or scene.
@@ -78,16 +89,26 @@ struct Plan<'a> {
     warnings: Vec<String>,
 }
 
-impl<'a> Plan<'a> {
-    /// `Err`: exit code (1 not loaded, 2 wrong arguments) and reason.
-    fn new(args: &'a SimulateArgs) -> Result<Self, (u8, String)> {
+/// A run before its first step, as arguments and scene want it.
+pub(super) struct Start {
+    pub world: World,
+    pub script: Script,
+    /// Control intervals to make.
+    pub intervals: u64,
+    /// Control intervals between two rows.
+    pub every: u64,
+    pub warnings: Vec<String>,
+}
+
+impl Start {
+    /// With this engine, or that of the scene. `Err`: exit code (1 not loaded, 2 wrong arguments) and reason.
+    pub fn new(args: &RunArgs, engine: Option<&str>, every: Option<f64>) -> Result<Self, (u8, String)> {
         let usage = |reason| (2, reason);
-        args.out.as_deref().map(Format::of).transpose().map_err(|e| usage(format!("--out {e}")))?;
         let mut scene = Scene::read(args.scene.as_deref()).map_err(usage)?;
         if args.ground {
             scene.lay_ground();
         }
-        let settings = settings(args, &scene).map_err(usage)?;
+        let settings = settings(args, engine, &scene).map_err(usage)?;
         scene.settings.engine = settings.engine;
         let stand = (base(args, &scene), base_pose(args, &scene).map_err(usage)?);
         let (source, switch) =
@@ -99,7 +120,7 @@ impl<'a> Plan<'a> {
         world.set_initial_state(initial);
         commands::turn(args, &mut world).map_err(usage)?;
         commands::command(args, &mut world).map_err(usage)?;
-        let (intervals, every) = schedule(args, &settings).map_err(usage)?;
+        let (intervals, every) = schedule(args.duration, every, &settings).map_err(usage)?;
         let read = |path| Script::read(path, &world, &loaded.description, (interval(&settings), intervals));
         let script = args.script.as_deref().map(read).transpose().map_err(usage)?.unwrap_or_default();
         let mut warnings = warnings(&loaded);
@@ -111,6 +132,16 @@ impl<'a> Plan<'a> {
             warnings.push("the duration is less than half a control interval: no step is made".into());
         }
         warnings.extend(script.warnings.iter().cloned());
+        Ok(Self { world, script, intervals, every, warnings })
+    }
+}
+
+impl<'a> Plan<'a> {
+    /// `Err`: exit code (1 not loaded, 2 wrong arguments) and reason.
+    fn new(args: &'a SimulateArgs) -> Result<Self, (u8, String)> {
+        args.out.as_deref().map(Format::of).transpose().map_err(|e| (2, format!("--out {e}")))?;
+        let Start { world, script, intervals, every, warnings } =
+            Start::new(&args.run, args.engine.as_deref(), args.every)?;
         Ok(Self { args, world, script, intervals, every, warnings })
     }
 
@@ -121,8 +152,7 @@ impl<'a> Plan<'a> {
         let told = |cause: io::Error| format!("--contacts: cannot write the file: {cause}");
         let contacts = self.args.contacts.as_ref().map(touches).transpose().map_err(told)?;
         let mut records = Records { recorder, contacts };
-        // Without the handler the run only loses its neat end.
-        let _ = ctrlc::set_handler(|| STOP.store(true, Ordering::Relaxed));
+        catch_signals();
         let mut progress = Progress::new();
         let outcome = self.simulate(&mut records, &mut progress);
         progress.clear();
@@ -144,7 +174,7 @@ impl<'a> Plan<'a> {
         let mut sample = Sample::new(&self.world);
         for interval in 0..=self.intervals {
             let complete = interval == self.intervals;
-            outcome.stopped = !complete && STOP.load(Ordering::Relaxed);
+            outcome.stopped = !complete && stopped();
             let (last, row) = (complete || outcome.stopped, interval % self.every == 0);
             if row || last {
                 sample.take(&self.world);
@@ -247,7 +277,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {
+fn settings(args: &RunArgs, engine_name: Option<&str>, scene: &Scene) -> Result<Settings, String> {
     let mut s = scene.settings;
     if let Some(t) = args.control_interval {
         s.control_interval_ns = interval_ns(t)?;
@@ -261,24 +291,24 @@ fn settings(args: &SimulateArgs, scene: &Scene) -> Result<Settings, String> {
     if let Some(name) = &args.integrator {
         s.integrator = integrator(name)?;
     }
-    if let Some(name) = &args.engine {
+    if let Some(name) = engine_name {
         s.engine = engine(name)?;
     }
     s.check()?;
     Ok(s)
 }
 
-fn base(args: &SimulateArgs, scene: &Scene) -> Base {
+fn base(args: &RunArgs, scene: &Scene) -> Base {
     args.base.as_deref().map(super::base_by_name).or(scene.base).unwrap_or(Base::Fixed)
 }
 
-fn base_pose(args: &SimulateArgs, scene: &Scene) -> Result<Pose, String> {
+fn base_pose(args: &RunArgs, scene: &Scene) -> Result<Pose, String> {
     let Some(text) = &args.base_pose else { return Ok(scene.robot.pose) };
     let form = "X,Y,Z,QX,QY,QZ,QW";
     pose(numbers("--base-pose", form, text)?).map_err(|reason| format!("--base-pose {text}: {reason}"))
 }
 
-fn switch_effects(args: &SimulateArgs, scene: &Scene, model: &mut Model) -> Result<(), String> {
+fn switch_effects(args: &RunArgs, scene: &Scene, model: &mut Model) -> Result<(), String> {
     scene.switch_effects(model)?;
     if let Some(both) = args.off.iter().find(|name| args.on.contains(name)) {
         return Err(format!("--off {both} and --on {both} contradict each other; leave one of them out"));
@@ -292,7 +322,7 @@ fn switch_effects(args: &SimulateArgs, scene: &Scene, model: &mut Model) -> Resu
 }
 
 /// What the flags say of the start, over what the scene says.
-fn override_start(args: &SimulateArgs, m: &Model, s: &mut State) -> Result<(), String> {
+fn override_start(args: &RunArgs, m: &Model, s: &mut State) -> Result<(), String> {
     if let Some(text) = &args.base_twist {
         if m.base == Base::Fixed {
             return Err("--base-twist needs --base free".into());
@@ -327,20 +357,20 @@ fn code(fault: Fault) -> (u8, String) {
 }
 
 /// Simulated time of a control interval, s.
-fn interval(s: &Settings) -> f64 {
+pub(super) fn interval(s: &Settings) -> f64 {
     s.control_interval_ns as f64 * 1e-9 * s.time_scale
 }
 
 /// Number of intervals, and of intervals between two rows.
-fn schedule(args: &SimulateArgs, s: &Settings) -> Result<(u64, u64), String> {
+fn schedule(duration: f64, every: Option<f64>, s: &Settings) -> Result<(u64, u64), String> {
     let interval = interval(s);
     if interval <= 0.0 {
         return Err("time_scale 0 stops time: the duration would never be reached".into());
     }
-    if !args.duration.is_finite() || args.duration < 0.0 {
-        return Err(format!("--duration {}: must be a finite number of seconds, 0 or more", args.duration));
+    if !duration.is_finite() || duration < 0.0 {
+        return Err(format!("--duration {duration}: must be a finite number of seconds, 0 or more"));
     }
-    let every = args.every.unwrap_or(interval);
+    let every = every.unwrap_or(interval);
     let ratio = every / interval;
     // Far more than rounding, far less than a mistake.
     let whole = ratio.is_finite() && ratio >= 0.5 && (ratio - ratio.round()).abs() <= 1e-6;
@@ -348,7 +378,7 @@ fn schedule(args: &SimulateArgs, s: &Settings) -> Result<(u64, u64), String> {
         let scaled = if s.time_scale == 1.0 { "" } else { " times the time scale" };
         return Err(format!("--every {every}: must be a whole multiple of the control interval{scaled}, {interval} s"));
     }
-    Ok(((args.duration / interval).round() as u64, ratio.round() as u64))
+    Ok(((duration / interval).round() as u64, ratio.round() as u64))
 }
 
 /// What the axes cannot do of their commands.

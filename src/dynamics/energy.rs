@@ -47,9 +47,14 @@ pub fn body_energy(m: &Model, k: &Kinematics, gravity: [f64; 3], body: usize) ->
 
 /// Momentum of the moving bodies.
 pub fn momentum(m: &Model, k: &Kinematics) -> Momentum {
+    momentum_of(m, k, 1..m.bodies.len())
+}
+
+/// Momentum of some bodies, about their common centre of mass.
+pub fn momentum_of(m: &Model, k: &Kinematics, bodies: impl Iterator<Item = usize>) -> Momentum {
     let (mut about_origin, mut linear, mut moment, mut mass) = (V3::default(), V3::default(), V3::default(), 0.0);
-    for (i, b) in m.bodies.iter().enumerate().skip(1) {
-        let (w, v) = (k.w[i], k.v[i]);
+    for i in bodies {
+        let (b, w, v) = (&m.bodies[i], k.w[i], k.v[i]);
         let p = k.r[i].mv(v * b.mass + w.cross(b.mc));
         let l = k.r[i].mv(b.inertia.mv(w) + b.mc.cross(v));
         about_origin += l + k.p[i].cross(p);

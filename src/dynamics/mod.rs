@@ -29,7 +29,7 @@ pub use check::singular_axes;
 pub use columns::Columns;
 pub use crba::crba;
 pub use damping::{Scheme, damping_power, damping_powers, write_damping};
-pub use energy::{Energy, Momentum, body_energy, energy, momentum};
+pub use energy::{Energy, Momentum, body_energy, energy, momentum, momentum_of};
 pub use integrate::{coordinate_rates, exponential_step, move_coordinates, normalize, turn};
 pub use joint::joint_transform;
 pub(crate) use joint::{joint_velocity, universal_axis};

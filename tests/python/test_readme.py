@@ -66,7 +66,7 @@ def until_last_topic(output):
 
 def without_measurements(line, command):
     """Figures that differ from run to run are left out of the comparison, and the last digits of long ones."""
-    measured = re.search(r"realnoid( bench.*)?$", command) or re.search("cpu_seconds|us_per_step", line)
+    measured = re.search(r"realnoid( (bench|compare).*)?$", command) or re.search("cpu_seconds|us_per_step", line)
     line = re.sub(r"\d+(\.\d+)?", "#", line) if measured and "axes" not in line else line
     line = re.sub(r"-?\d+\.\d{9,}", lambda number: f"{float(number[0]):.9g}", line)
     return re.sub(r"\s+", " ", line).rstrip()
