@@ -20,15 +20,6 @@ fn incline(angle: f64) -> Settings {
     Settings { gravity: [G * angle.sin(), 0.0, -G * angle.cos()], ..plain() }
 }
 
-/// A single body at height z with this twist.
-fn start(w: &mut World, z: f64, angular: Vec3, linear: Vec3) {
-    let m = w.model().clone();
-    let mut s = State::initial(&m);
-    s.set_base_pose(&m, [0.0, 0.0, z], [0.0, 0.0, 0.0, 1.0]);
-    s.set_base_twist(&m, angular, linear);
-    w.set_initial_state(s);
-}
-
 fn run(w: &mut World, seconds: f64) {
     let steps = (seconds / (w.settings().control_interval_ns as f64 * 1e-9)).round() as usize;
     (0..steps).for_each(|_| w.advance());
@@ -225,11 +216,7 @@ fn spinning_friction() {
 fn tower(masses: &[f64], s: Settings) -> World {
     let list: Vec<(f64, f64)> = masses.iter().map(|m| (*m, 0.1)).collect();
     let mut w = world(balls(&list, surface(1.0), ground(0.5)), s);
-    let mut st = State::initial(w.model());
-    for k in 0..masses.len() {
-        st.q[7 * k + 2] = 0.1 + 0.2 * k as f64;
-    }
-    w.set_initial_state(st);
+    stack(&mut w);
     w
 }
 
@@ -262,11 +249,7 @@ fn towers() {
 /// Cubes of 0.2 m on each other.
 fn boxes(masses: &[f64], s: Settings) -> World {
     let mut w = world(cubes(masses, 0.1, surface(1.0), ground(0.5)), s);
-    let mut st = State::initial(w.model());
-    for k in 0..masses.len() {
-        st.q[7 * k + 2] = 0.1 + 0.2 * k as f64;
-    }
-    w.set_initial_state(st);
+    stack(&mut w);
     w
 }
 

@@ -52,6 +52,12 @@ fn world(m: &Arc<Model>, engine: EngineKind) -> World {
     World::new(m.clone(), Settings { engine, ..Settings::default() }).unwrap()
 }
 
+fn weightless(m: &Arc<Model>, engine: EngineKind) -> World {
+    let mut w = world(m, engine);
+    w.set_settings(Settings { gravity: [0.0; 3], ..*w.settings() }).unwrap();
+    w
+}
+
 fn run(w: &mut World, seconds: f64) {
     let intervals = (seconds / (w.settings().control_interval_ns as f64 * 1e-9)).round() as usize;
     (0..intervals).for_each(|_| w.advance());

@@ -3,9 +3,9 @@
 
 mod support;
 
-use realnoid::dynamics::{Kinematics, kinematics};
+use realnoid::dynamics::{Kinematics, kinematics, kinematics_of};
 use realnoid::engine::State;
-use realnoid::engine::maximal::{Gap, carry, read_state};
+use realnoid::engine::maximal::{Gap, read_state};
 use realnoid::math::V3;
 use realnoid::model::{Base, JointType, Model};
 use support::{ALL, Random, tree};
@@ -119,7 +119,7 @@ fn a_body_is_carried_where_kinematics_put_it() {
     let mut carried = k.clone();
     for body in 1..m.bodies.len() {
         (carried.p[body], carried.w[body]) = Default::default();
-        carry(&m, &s, &mut carried, body);
+        kinematics_of(&m, &mut carried, (&s.q, &s.v), &[body]);
         assert_eq!((carried.p[body], carried.r[body]), (k.p[body], k.r[body]));
         assert_eq!((carried.w[body], carried.v[body]), (k.w[body], k.v[body]));
     }

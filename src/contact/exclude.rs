@@ -3,7 +3,7 @@
 use super::{Detector, Touch};
 use crate::dynamics::{Kinematics, kinematics};
 use crate::math::V3;
-use crate::model::{JointType, LinkFrame, Model};
+use crate::model::{JointType, Model};
 
 /// Links that overlap by more than this where all joints are at 0 never touch, m.
 pub const OVERLAP: f64 = 1e-4;
@@ -33,14 +33,8 @@ pub fn excluded(m: &Model) -> (Vec<[usize; 2]>, Vec<Overlap>) {
     (pairs, overlapping)
 }
 
-fn body_of(m: &Model, link: usize) -> usize {
-    match m.links[link].frame {
-        LinkFrame::OnBody { body, .. } | LinkFrame::InGroup { body, .. } => body,
-    }
-}
-
 fn neighbours(m: &Model, a: usize, b: usize) -> bool {
-    let (a, b) = (body_of(m, a), body_of(m, b));
+    let (a, b) = (m.links[a].frame.body(), m.links[b].frame.body());
     a == b || carrier(m, a) == Some(b) || carrier(m, b) == Some(a)
 }
 

@@ -6,7 +6,7 @@ use super::surface::Surface;
 use super::vector::{Frame, norm};
 use crate::dynamics::Kinematics;
 use crate::math::{M3, V3};
-use crate::model::{Collider, LinkFrame, Model, Surface as Friction};
+use crate::model::{Collider, Model, Surface as Friction};
 use crate::shape::ContactForm;
 use std::sync::Arc;
 
@@ -40,12 +40,7 @@ pub(super) struct Part {
 
 impl Part {
     pub(super) fn of(m: &Model, c: &Collider) -> Self {
-        let (body, pose) = match c.link.map(|l| &m.links[l].frame) {
-            Some(LinkFrame::OnBody { body, offset } | LinkFrame::InGroup { body, offset, .. }) => {
-                (*body, offset * c.pose)
-            }
-            None => (0, c.pose),
-        };
+        let (body, pose) = m.seat_of(c);
         let r = M3::from(*pose.rotation.to_rotation_matrix().matrix());
         let frame = Frame { r, p: V3::from(pose.translation.vector) };
         let shape = match (&c.form, Solid::of(&c.form, c.margin)) {

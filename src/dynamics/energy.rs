@@ -45,6 +45,12 @@ pub fn body_energy(m: &Model, k: &Kinematics, gravity: [f64; 3], body: usize) ->
     }
 }
 
+/// Linear momentum of one body, along the world's axes, kg·m/s.
+pub fn body_momentum(m: &Model, k: &Kinematics, body: usize) -> V3<f64> {
+    let b = &m.bodies[body];
+    k.r[body].mv(k.v[body] * b.mass + k.w[body].cross(b.mc))
+}
+
 /// Momentum of the moving bodies.
 pub fn momentum(m: &Model, k: &Kinematics) -> Momentum {
     momentum_of(m, k, 1..m.bodies.len())
@@ -55,7 +61,7 @@ pub fn momentum_of(m: &Model, k: &Kinematics, bodies: impl Iterator<Item = usize
     let (mut about_origin, mut linear, mut moment, mut mass) = (V3::default(), V3::default(), V3::default(), 0.0);
     for i in bodies {
         let (b, w, v) = (&m.bodies[i], k.w[i], k.v[i]);
-        let p = k.r[i].mv(v * b.mass + w.cross(b.mc));
+        let p = body_momentum(m, k, i);
         let l = k.r[i].mv(b.inertia.mv(w) + b.mc.cross(v));
         about_origin += l + k.p[i].cross(p);
         linear += p;

@@ -10,7 +10,7 @@
 //! with P its linear momentum at the end and the beginning. This holds for any integrator, and counts impacts in full.
 
 use super::damping::rate;
-use super::{Kinematics, Scheme, kinematics};
+use super::{Kinematics, Scheme, body_momentum, kinematics};
 use crate::math::{Pose, V3};
 use crate::model::{JointType, Model};
 
@@ -110,9 +110,7 @@ fn bases(m: &Model) -> impl Iterator<Item = &Pose> {
 /// Linear momentum of what each joint carries, along the axes of the world, kg·m/s.
 fn momenta(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), out: &mut [V3<f64>]) {
     kinematics(m, k, q, v);
-    for (i, b) in m.bodies.iter().enumerate() {
-        out[i] = k.r[i].mv(k.v[i] * b.mass + k.w[i].cross(b.mc));
-    }
+    out.iter_mut().enumerate().for_each(|(i, p)| *p = body_momentum(m, k, i));
     for_children(m, |parent, child| {
         let carried = out[child];
         out[parent] += carried;
@@ -122,8 +120,7 @@ fn momenta(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), out: &mut [V
 /// The same of each damped body alone, for the state that `k` is of.
 fn own_momenta(m: &Model, k: &Kinematics, out: &mut [[V3<f64>; 2]], end: usize) {
     for (d, momentum) in m.dampings.iter().zip(out) {
-        let (i, b) = (d.body, &m.bodies[d.body]);
-        momentum[end] = k.r[i].mv(k.v[i] * b.mass + k.w[i].cross(b.mc));
+        momentum[end] = body_momentum(m, k, d.body);
     }
 }
 

@@ -38,6 +38,12 @@ impl Kinematics {
         self.v.copy_from_slice(&other.v);
     }
 
+    /// Velocity of a body at a point of the world, along the world's axes, m/s.
+    #[inline(always)]
+    pub fn velocity_at(&self, body: usize, point: V3<f64>) -> V3<f64> {
+        self.r[body].mv(self.v[body]) + self.r[body].mv(self.w[body]).cross(point - self.p[body])
+    }
+
     /// The same of these bodies only.
     pub fn copy_of(&mut self, other: &Self, bodies: &[usize]) {
         for i in bodies {

@@ -11,19 +11,13 @@
 use super::State;
 use crate::math::V3;
 use crate::model::{Axis, AxisSlot, DriveLimits, Effects, EulerRates, Model};
-use crate::solver::{AxisCommand, AxisInput, Brakes, FreeMobility, Law, Mode, Piece, Reach, Work};
+use crate::solver::{AxisCommand, AxisInput, Books, Brakes, FreeMobility, Law, Mode, Piece, Reach};
 
 /// Laws, pieces and books of all axes. Makes its memory once.
 #[derive(Clone, Debug)]
 pub struct Actuation {
-    /// The drives as they are now.
-    pub drives: Vec<DriveLimits>,
-    /// Per axis: drive torque or force really applied in the last step, N·m or N.
-    pub effort: Vec<f64>,
-    /// Work since the start.
-    pub work: Work,
-    /// By how much an axis was outside its range at most, rad or m.
-    pub worst_stop: f64,
+    /// The drives, and what became of them.
+    pub books: Books,
     rates: Vec<EulerRates>,
     axes: Vec<AxisState>,
     mobility: FreeMobility,
@@ -82,10 +76,7 @@ impl Actuation {
             stop: None,
         };
         Self {
-            drives: m.axes.iter().map(|a| a.drive).collect(),
-            effort: vec![0.0; m.axes.len()],
-            work: Work::default(),
-            worst_stop: 0.0,
+            books: Books::new(m),
             rates: vec![EulerRates::default(); m.eulers.len()],
             axes: vec![axis; m.axes.len()],
             mobility: FreeMobility::new(m),
@@ -102,8 +93,7 @@ impl Actuation {
     /// Forgets the steps so far.
     pub fn reset(&mut self) {
         self.forget();
-        self.effort.fill(0.0);
-        (self.work, self.worst_stop) = (Work::default(), 0.0);
+        self.books.reset();
     }
 
     /// Forgets what the axes did in the last step; the books go on.
@@ -121,7 +111,7 @@ impl Actuation {
         self.mobility = FreeMobility::new(m);
         for (i, axis) in m.axes.iter().enumerate() {
             if let AxisSlot::Apart { .. } = axis.slot {
-                self.effort[i] = 0.0;
+                self.books.effort[i] = 0.0;
                 (self.axes[i].memory, self.axes[i].stop, self.axes[i].piece) = (0, None, Piece::NONE);
             }
         }
@@ -129,32 +119,23 @@ impl Actuation {
 
     /// Before a step that may have several parts.
     pub fn open_books(&mut self) {
-        self.effort.fill(0.0);
+        self.books.effort.fill(0.0);
     }
 
     /// Sets up laws and pieces. True if a 3DOF group is at its pole.
     pub fn prepare(&mut self, m: &Model, start: &Start) -> bool {
-        let mut at_pole = false;
-        for (rates, (group, angles)) in self.rates.iter_mut().zip(m.eulers.iter().zip(&start.state.angles)) {
-            *rates = group.rates(*angles);
-            at_pole |= rates.at_pole;
-        }
+        let at_pole = m.write_rates(&start.state.angles, &mut self.rates);
         self.learn_mobilities(m, start);
         for (i, axis) in m.axes.iter().enumerate() {
             let at = &mut self.axes[i];
             (at.q, at.v) = start.state.axis(m, i);
-            at.rotor = if start.effects.rotor_inertia { self.drives[i].rotor_inertia } else { 0.0 };
+            at.rotor = self.books.rotor(i, start.effects);
             at.stop = hard_stop(axis, at.q, start.effects);
             if start.effects.limits {
-                self.worst_stop = self.worst_stop.max(axis.lower - at.q).max(at.q - axis.upper);
+                self.books.watch_stop(axis, at.q);
             }
-            let graspable = match axis.slot {
-                AxisSlot::Euler { group, angle: 0 } => !self.rates[group].at_pole,
-                AxisSlot::Apart { .. } => false,
-                _ => true,
-            };
-            if graspable {
-                at.set(axis, (&self.drives[i], start.commands[i]), start);
+            if axis.is_graspable(&self.rates) {
+                at.set(axis, (&self.books.drives[i], start.commands[i]), start);
             } else {
                 at.law.clear();
                 (at.piece, at.stop, at.rotor) = (Piece::NONE, None, 0.0);
@@ -166,7 +147,7 @@ impl Actuation {
     /// How each axis answers to a torque, for servos and for the choice of the pieces.
     fn learn_mobilities(&mut self, m: &Model, start: &Start) {
         let q = &start.state.q;
-        let rotors = self.drives.iter().map(|d| if start.effects.rotor_inertia { d.rotor_inertia } else { 0.0 });
+        let rotors = (0..m.axes.len()).map(|axis| self.books.rotor(axis, start.effects));
         self.mobility.refresh(m, q, rotors);
         for (i, at) in self.axes.iter_mut().enumerate() {
             at.brakes.mobility = self.mobility.of(m, q, &self.rates, i);
@@ -202,9 +183,8 @@ impl Actuation {
             at.memory = memory;
             at.correction = if memory == 0 { 0.0 } else { at.correction + self.gain * (at.piece.speed - mean) };
             at.brakes.drift = at.acceleration - at.brakes.mobility * effort;
-            self.effort[i] += effort * h / whole;
-            self.work.drives += effort * way;
-            self.work.losses -= (total - effort) * way;
+            self.books.effort[i] += effort * h / whole;
+            self.books.work.book(effort, total, way);
         }
     }
 }
@@ -262,6 +242,5 @@ const GAIN: f64 = 0.5;
 const AHEAD: f64 = 2.0;
 
 fn hard_stop(axis: &Axis, q: f64, effects: Effects) -> Option<[f64; 2]> {
-    let bounded = axis.lower.is_finite() || axis.upper.is_finite();
-    (effects.limits && bounded && axis.stop.cfm == 0.0).then_some([axis.lower - q, axis.upper - q])
+    (effects.limits && axis.has_hard_stops()).then_some([axis.lower - q, axis.upper - q])
 }

@@ -7,9 +7,10 @@
 //! base has no locked motion. Each such piece is counted, and what it took is added up.
 
 use super::midpoint::Midpoint;
+use super::paid::share_of;
 use super::rbx::{Rbx, State, StepReport};
 use crate::dynamics::{Energy, Kinematics, energy, kinematics};
-use crate::math::{Mat3, S3, V3, Vec3};
+use crate::math::{Mat3, V3, Vec3};
 use crate::model::{Body, JointType, Model};
 
 /// Buffers of the guard.
@@ -73,9 +74,7 @@ impl Rbx {
         mid.guard.lock(m);
         let rest = after.kinetic - mid.guard.locked.iter().map(|(_, l)| l.kinetic).sum::<f64>();
         let held = before.kinetic + before.potential - after.potential + by_start - (after.kinetic - rest);
-        // share² · rest = held + share · by_end
-        let root = (by_end * by_end + 4.0 * rest * held.max(0.0)).sqrt();
-        let share = if rest > 0.0 { (by_end + root) / (2.0 * rest) } else { 1.0 };
+        let share = if rest > 0.0 { share_of(rest, held, by_end) } else { 1.0 };
         if !(0.0..least).contains(&share) {
             return;
         }
@@ -125,13 +124,13 @@ impl Locked {
     fn add(&mut self, b: &Body, (r, origin): (Mat3, Vec3), (w, v): (Vec3, Vec3)) {
         let c = r * Vec3::from(b.mc);
         let p = r * (v * b.mass + w.cross(&b.mc.into()));
-        let l = r * (matrix(&b.inertia) * w + Vec3::from(b.mc).cross(&v));
+        let l = r * (Mat3::from(b.inertia) * w + Vec3::from(b.mc).cross(&v));
         self.mass += b.mass;
         self.moment += c + origin * b.mass;
         self.linear += p;
         self.angular += l + origin.cross(&p);
         // J + 2 (c·o) 1 − (c oᵀ + o cᵀ) + m (o·o 1 − o oᵀ)
-        self.inertia += r * matrix(&b.inertia) * r.transpose();
+        self.inertia += r * Mat3::from(b.inertia) * r.transpose();
         self.inertia += Mat3::identity() * (2.0 * c.dot(&origin) + b.mass * origin.norm_squared());
         self.inertia -= c * origin.transpose() + origin * c.transpose() + b.mass * origin * origin.transpose();
     }
@@ -153,8 +152,4 @@ impl Locked {
             *self = Self { angular, linear, center, kinetic, ..sums };
         }
     }
-}
-
-fn matrix(s: &S3<f64>) -> Mat3 {
-    Mat3::new(s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz)
 }

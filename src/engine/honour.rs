@@ -68,6 +68,22 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
     found
 }
 
+/// The first of each kind (the same item, the same instead), and how many others there are.
+pub fn by_kind<T>(all: impl Iterator<Item = T>, of: impl Fn(&T) -> &Shortfall) -> Vec<(T, usize)> {
+    let mut groups: Vec<(T, usize)> = vec![];
+    for one in all {
+        let same = |(first, _): &&mut (T, usize)| {
+            let (first, one) = (of(first), of(&one));
+            first.item == one.item && first.instead == one.instead
+        };
+        match groups.iter_mut().find(same) {
+            Some((_, others)) => *others += 1,
+            None => groups.push((one, 0)),
+        }
+    }
+    groups
+}
+
 /// The link on a body, or the first one behind it.
 pub(super) fn name_of(m: &Model, body: usize) -> String {
     let behind = (body..m.bodies.len()).find_map(|b| link_on(m, b));
@@ -100,18 +116,8 @@ pub fn not_honoured(kind: EngineKind, d: &Description, m: &Model) -> Vec<Finding
     });
     let other = "choose an engine that does (rbx does it all), or take it out";
     let told = shortfalls(kind, m).into_iter().map(|s| (place_of(d, &s.element), s)).map(|(at, s)| (s, at, other));
-    let mut found: Vec<(Shortfall, Finding, usize)> = vec![];
-    for (shortfall, at, mend) in beyond.chain(told) {
-        let same = |s: &Shortfall| s.item == shortfall.item && s.instead == shortfall.instead;
-        match found.iter_mut().find(|(s, ..)| same(s)) {
-            Some((_, _, others)) => *others += 1,
-            None => {
-                let finding = finding(engine, &shortfall, at, mend);
-                found.push((shortfall, finding, 0));
-            }
-        }
-    }
-    let named = |(shortfall, mut finding, others): (Shortfall, Finding, usize)| {
+    let named = |((shortfall, at, mend), others): ((Shortfall, Position, &str), usize)| {
+        let mut finding = finding(engine, &shortfall, at, mend);
         if others > 0 {
             finding.message.push_str(&format!(", nor of {others} other{}", if others == 1 { "" } else { "s" }));
         }
@@ -120,7 +126,7 @@ pub fn not_honoured(kind: EngineKind, d: &Description, m: &Model) -> Vec<Finding
         }
         finding
     };
-    found.into_iter().map(named).collect()
+    by_kind(beyond.chain(told), |(s, ..)| s).into_iter().map(named).collect()
 }
 
 fn finding(engine: &str, s: &Shortfall, at: Position, mend: &str) -> Finding {

@@ -6,7 +6,7 @@
 //! the [`Gap`].
 
 use super::State;
-use crate::dynamics::{Kinematics, joint_transform, joint_velocity, universal_axis};
+use crate::dynamics::{Kinematics, joint_transform, universal_axis};
 use crate::math::{M3, V3};
 use crate::model::{Body, JointType, Model};
 use std::f64::consts::TAU;
@@ -30,7 +30,8 @@ impl Gap {
 /// Writes the state in which the bodies have these poses and twists; angles go on from those that `state` had. Returns the
 /// widest gaps of its joints. Allocates nothing.
 ///
-/// `k` in the world frame, of all bodies; a body without one of its own is where [`carry`] puts it.
+/// `k` in the world frame, of all bodies; a body that an engine does not make, since it has no mass and its joint does not move, is where
+/// [`crate::dynamics::kinematics_of`] puts it.
 pub fn read_state(m: &Model, k: &Kinematics, state: &mut State) -> Gap {
     let mut widest = Gap::default();
     for (i, b) in m.bodies.iter().enumerate().skip(1) {
@@ -38,19 +39,6 @@ pub fn read_state(m: &Model, k: &Kinematics, state: &mut State) -> Gap {
     }
     state.read_angles(m);
     widest
-}
-
-/// Puts a body where its joint at the coordinates of `state` puts it on its parent: one that an engine does not make, since it
-/// has no mass and its joint does not move.
-pub fn carry(m: &Model, state: &State, k: &mut Kinematics, body: usize) {
-    let b = &m.bodies[body];
-    let (r, p) = joint_transform(b, &state.q);
-    let own = joint_velocity(b, &state.q, &state.v);
-    let (w, v, parent) = (k.w[b.parent], k.v[b.parent], k.r[b.parent]);
-    k.w[body] = r.tv(w) + own.a;
-    k.v[body] = r.tv(w.cross_add(p, v)) + own.l;
-    k.p[body] = parent.mv(p) + k.p[b.parent];
-    k.r[body] = parent.mm(&r);
 }
 
 /// A body against the frame of its joint on its parent.
@@ -72,7 +60,7 @@ impl Relative {
         let seen = |world: V3<f64>| k.r[i].tv(world);
         let (w0, v0) = (parent.mv(k.w[b.parent]), parent.mv(k.w[b.parent].cross_add(arm, k.v[b.parent])));
         Self {
-            r: transposed_times(&parent.mm(&b.tree_r), &k.r[i]),
+            r: parent.mm(&b.tree_r).tmm(&k.r[i]),
             p: b.tree_r.tv(arm - b.tree_p),
             w: k.w[i] - seen(w0),
             v: k.v[i] - seen(v0),
@@ -109,7 +97,7 @@ fn read_joint(b: &Body, at: &Relative, q: &mut [f64], v: &mut [f64]) -> Gap {
     }
     let makes = Body { q: 0, tree_r: M3::identity(), tree_p: V3::default(), ..b.clone() };
     let (turned, shifted) = joint_transform(&makes, q);
-    Gap { linear: size(at.p - shifted), angular: angle(&transposed_times(&turned, &at.r)) }
+    Gap { linear: size(at.p - shifted), angular: angle(&turned.tmm(&at.r)) }
 }
 
 /// The unit quaternion (w, x, y, z) of a rotation, of the two the one that is nearer to what `q` had.
@@ -131,12 +119,6 @@ fn read_quaternion(r: &M3<f64>, q: &mut [f64]) {
     let scale = if along < 0.0 { -1.0 / norm } else { 1.0 / norm };
     new.iter_mut().for_each(|x| *x *= scale);
     q.copy_from_slice(&new);
-}
-
-/// `Aᵀ B`.
-pub(super) fn transposed_times(a: &M3<f64>, b: &M3<f64>) -> M3<f64> {
-    let (x, y, z) = (a.tv(b.col0()), a.tv(b.col1()), a.tv(b.col2()));
-    M3::rows(V3::new(x.x, y.x, z.x), V3::new(x.y, y.y, z.y), V3::new(x.z, y.z, z.z))
 }
 
 /// By how much a rotation turns, rad.

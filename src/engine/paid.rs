@@ -7,7 +7,7 @@
 
 use super::forest::{Forest, Islands};
 use super::rbx::{Rbx, State, StepReport};
-use crate::dynamics::{Energy, Kinematics, body_energy, energy, kinematics};
+use crate::dynamics::{Energy, Kinematics, body_energy, body_momentum, energy, kinematics};
 use crate::math::V3;
 use crate::model::Model;
 
@@ -46,25 +46,24 @@ impl Rbx {
     /// Ends a piece of a step that began with the state `start` (of `Contacts::start`).
     /// Returns what even standing still does not pay for: bodies that were lifted out of each other, J.
     pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) -> f64 {
-        let carried = self.axes.contacts().is_some_and(|c| c.carrying_bodies().next().is_some());
-        let Some(mut paid) = self.paid.take_if(|_| carried) else { return 0.0 };
+        let touches = self.axes.touches();
+        let Some(mut paid) = self.paid.take_if(|_| touches) else { return 0.0 };
+        self.join_touched(&mut paid);
+        if let Some(contacts) = self.axes.contacts_mut() {
+            contacts.arrive(m, &self.state.q, &self.state.v);
+        }
+        self.balance(m, &mut paid, start, gravity);
+        for body in 1..m.bodies.len() {
+            let tree = paid.islands.of(paid.forest.of_body[body]);
+            let (b, share) = (&m.bodies[body], paid.accounts[tree].share);
+            if share < 1.0 {
+                self.state.v[b.v..b.v + b.joint.nv()].iter_mut().for_each(|v| *v *= share);
+            }
+        }
         let mut owed = 0.0;
-        if self.touched(&mut paid) {
-            if let Some(contacts) = self.axes.contacts_mut() {
-                contacts.arrive(m, &self.state.q, &self.state.v);
-            }
-            self.balance(m, &mut paid, start, gravity);
-            for body in 1..m.bodies.len() {
-                let tree = paid.islands.of(paid.forest.of_body[body]);
-                let (b, share) = (&m.bodies[body], paid.accounts[tree].share);
-                if share < 1.0 {
-                    self.state.v[b.v..b.v + b.joint.nv()].iter_mut().for_each(|v| *v *= share);
-                }
-            }
-            for account in paid.accounts.iter().filter(|a| a.share < 1.0) {
-                report.trimmed_energy += (1.0 - account.share * account.share) * account.after.kinetic;
-                owed += (-account.held()).max(0.0);
-            }
+        for account in paid.accounts.iter().filter(|a| a.share < 1.0) {
+            report.trimmed_energy += (1.0 - account.share * account.share) * account.after.kinetic;
+            owed += (-account.held()).max(0.0);
         }
         self.paid = Some(paid);
         owed
@@ -83,20 +82,15 @@ impl Rbx {
         let Some(paid) = &mut self.paid else { return };
         let k = &mut paid.kinematics;
         kinematics(m, k, q.unwrap_or(&self.state.q), &self.lift);
-        let momentum = |body: usize| {
-            let b = &m.bodies[body];
-            k.r[body].mv(k.v[body] * b.mass + k.w[body].cross(b.mc))
-        };
         let g = V3::new(gravity[0], gravity[1], gravity[2]);
-        let raised: f64 = (1..m.bodies.len()).map(|body| -h * g.dot(momentum(body))).sum();
-        self.axes.work.contacts -= raised;
+        let raised: f64 = (1..m.bodies.len()).map(|body| -h * g.dot(body_momentum(m, k, body))).sum();
+        self.axes.books.work.contacts -= raised;
     }
 
-    /// Joins the trees that contacts hold together; true if there are contacts that carry something.
-    fn touched(&self, paid: &mut Paid) -> bool {
+    /// Joins the trees that contacts hold together.
+    fn join_touched(&self, paid: &mut Paid) {
         paid.accounts.fill(Account { share: 1.0, ..Account::default() });
         paid.islands.part();
-        let mut any = false;
         for bodies in self.axes.contacts().into_iter().flat_map(|c| c.carrying_bodies()) {
             let [a, b] = bodies.map(|body| paid.forest.of_body[body]);
             paid.islands.join(a, b);
@@ -105,9 +99,7 @@ impl Rbx {
                     account.touched = true;
                 }
             }
-            any = true;
         }
-        any
     }
 
     /// Adds up the accounts of each island in its first tree, and finds its share.
@@ -159,7 +151,13 @@ impl Account {
         if kinetic <= held + by_end || kinetic <= 0.0 {
             return 1.0;
         }
-        let share = (by_end + (by_end * by_end + 4.0 * kinetic * held.max(0.0)).sqrt()) / (2.0 * kinetic);
+        let share = share_of(kinetic, held, by_end);
         if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
     }
+}
+
+/// The share s ≥ 0 of the speeds with `s² T = held + s by_end`: of a motion with kinetic energy T > 0, that is paid for with `held` and, at
+/// the end of the step, as much as the speeds there have a share in.
+pub(super) fn share_of(kinetic: f64, held: f64, by_end: f64) -> f64 {
+    (by_end + (by_end * by_end + 4.0 * kinetic * held.max(0.0)).sqrt()) / (2.0 * kinetic)
 }

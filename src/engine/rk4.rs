@@ -52,7 +52,7 @@ impl Rbx {
         if !self.axes.stayed_smooth(m, self.state.as_ref()) {
             return false;
         }
-        self.axes.work.losses -= s.h / 6.0 * damped;
+        self.axes.books.work.losses -= s.h / 6.0 * damped;
         self.axes.finish_smooth(m, &self.ws, (self.state.as_ref(), s.h), &self.qdd);
         true
     }

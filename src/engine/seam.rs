@@ -3,8 +3,8 @@
 use super::{EngineKind, Integrator, Rbx, State, StepReport, StepSettings};
 use crate::dynamics::Kinematics;
 use crate::math::V3;
-use crate::model::{DriveLimits, Model};
-use crate::solver::{AxisCommand, ContactPoint, Work};
+use crate::model::Model;
+use crate::solver::{AxisCommand, Books, ContactPoint};
 
 /// Moves the bodies of a [`Model`] in time. All of them speak in the model's coordinates, SI units, Z up.
 pub trait Engine: std::fmt::Debug + Send + Sync {
@@ -50,23 +50,11 @@ pub trait Engine: std::fmt::Debug + Send + Sync {
     /// Per body: force of its contacts, averaged over the last step, along the world's axes, N; empty if nothing can touch.
     fn received(&self) -> &[V3<f64>];
 
-    /// The drives as they are now, in the order of `Model::axes`.
-    fn drives(&self) -> &[DriveLimits];
+    /// Its drives, and what became of them.
+    fn books(&self) -> &Books;
 
-    /// The same, to be changed between steps.
-    fn drives_mut(&mut self) -> &mut [DriveLimits];
-
-    /// Per axis: drive torque or force really applied in the last step, N·m or N.
-    fn efforts(&self) -> &[f64];
-
-    /// Work since the start, J.
-    fn work(&self) -> Work;
-
-    /// The same, to book what happens between steps.
-    fn work_mut(&mut self) -> &mut Work;
-
-    /// By how much an axis was outside its range at most since the start, rad or m.
-    fn worst_stop(&self) -> f64;
+    /// The same, to change drives and to book what happens between steps.
+    fn books_mut(&mut self) -> &mut Books;
 
     /// By how much the two sides of a joint have come apart at most since the start, m; 0 by construction in reduced coordinates.
     fn joint_drift(&self) -> f64 {
@@ -142,28 +130,12 @@ impl Engine for Rbx {
         self.axes.contacts().map_or(&[], |c| c.received())
     }
 
-    fn drives(&self) -> &[DriveLimits] {
-        &self.axes.drives
+    fn books(&self) -> &Books {
+        &self.axes.books
     }
 
-    fn drives_mut(&mut self) -> &mut [DriveLimits] {
-        &mut self.axes.drives
-    }
-
-    fn efforts(&self) -> &[f64] {
-        &self.axes.effort
-    }
-
-    fn work(&self) -> Work {
-        self.axes.work
-    }
-
-    fn work_mut(&mut self) -> &mut Work {
-        &mut self.axes.work
-    }
-
-    fn worst_stop(&self) -> f64 {
-        self.axes.worst_stop
+    fn books_mut(&mut self) -> &mut Books {
+        &mut self.axes.books
     }
 
     fn copy(&self) -> Box<dyn Engine> {

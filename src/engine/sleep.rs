@@ -81,12 +81,17 @@ impl Sleep {
         for tree in &mut self.trees {
             tree.rests = !tree.limits.is_empty() && tree.slow > tree.after;
         }
+        self.spread(touches, |tree| tree.rests = false);
+    }
+
+    /// As long as one of two trees that touch rests and the other does not, wakes both.
+    fn spread(&mut self, touches: impl Iterator<Item = [usize; 2]> + Clone, wake: impl Fn(&mut Tree)) {
         for _ in 0..self.trees.len() {
             let mut changed = false;
-            for [a, b] in touches.clone().map(|bodies| bodies.map(|b| self.tree_of[b])) {
-                let (Some(x), Some(y)) = (self.trees.get(a), self.trees.get(b)) else { continue };
+            for pair in touches.clone().map(|bodies| bodies.map(|b| self.tree_of[b])) {
+                let [Some(x), Some(y)] = pair.map(|tree| self.trees.get(tree)) else { continue };
                 if x.rests != y.rests {
-                    (self.trees[a].rests, self.trees[b].rests) = (false, false);
+                    pair.iter().for_each(|tree| wake(&mut self.trees[*tree]));
                     changed = true;
                 }
             }
@@ -113,7 +118,9 @@ impl Rbx {
         sleep.gravity = gravity;
         sleep.commands.copy_from_slice(commands);
         if woken {
-            sleep.settle_after_waking(self.axes.contacts().into_iter().flat_map(|c| c.touching_bodies()));
+            // Those that touch a woken tree wake with it.
+            let touches = self.axes.contacts().into_iter().flat_map(|c| c.touching_bodies());
+            sleep.spread(touches, |tree| (tree.slow, tree.rests) = (0.0, false));
             self.take_part(m, &sleep);
         }
         let all = sleep.is_all();
@@ -162,22 +169,6 @@ impl Rbx {
     }
 }
 
-impl Sleep {
-    /// Those that touch a woken tree wake with it.
-    fn settle_after_waking(&mut self, touches: impl Iterator<Item = [usize; 2]> + Clone) {
-        for _ in 0..self.trees.len() {
-            for [a, b] in touches.clone().map(|bodies| bodies.map(|b| self.tree_of[b])) {
-                let (Some(x), Some(y)) = (self.trees.get(a), self.trees.get(b)) else { continue };
-                if x.rests != y.rests {
-                    for tree in [a, b] {
-                        (self.trees[tree].slow, self.trees[tree].rests) = (0.0, false);
-                    }
-                }
-            }
-        }
-    }
-}
-
 /// The trees, and of each body its own.
 fn trees(m: &Model) -> (Vec<Tree>, Vec<usize>) {
     let mut trees: Vec<Tree> = vec![];
@@ -207,12 +198,12 @@ fn trees(m: &Model) -> (Vec<Tree>, Vec<usize>) {
     (trees, tree_of)
 }
 
-/// That of the link nearest the root on a body (J-6).
+/// That of the link nearest the root on a body (J-6); none while the effect is off.
 pub(super) fn limit(m: &Model, body: usize) -> Option<Deactivation> {
     let on_it = |l: &&crate::model::LinkInfo| matches!(l.frame, LinkFrame::OnBody { body: b, .. } if b == body);
     let links = || m.links.iter().filter(on_it);
     let nearest = links().find(|l| l.parent.is_none_or(|p| !on_it(&&m.links[p]))).or_else(|| links().next())?;
-    nearest.deactivation
+    nearest.deactivation.filter(|_| m.effects.deactivation)
 }
 
 fn size(v: V3<f64>) -> f64 {

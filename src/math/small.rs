@@ -158,6 +158,12 @@ impl<T: Real> M3<T> {
     pub fn mm(&self, n: &Self) -> Self {
         Self::rows(n.tv(self.r[0]), n.tv(self.r[1]), n.tv(self.r[2]))
     }
+    /// `Mᵀ N`.
+    #[inline(always)]
+    pub fn tmm(&self, n: &Self) -> Self {
+        let (x, y, z) = (self.tv(n.col0()), self.tv(n.col1()), self.tv(n.col2()));
+        Self::rows(V3::new(x.x, y.x, z.x), V3::new(x.y, y.y, z.y), V3::new(x.z, y.z, z.z))
+    }
     /// `M Nᵀ`.
     #[inline(always)]
     pub fn mmt(&self, n: &Self) -> Self {
@@ -263,6 +269,11 @@ impl From<crate::math::Mat3> for M3<f64> {
 impl From<M3<f64>> for crate::math::Mat3 {
     fn from(m: M3<f64>) -> Self {
         Self::from_columns(&[m.col0().into(), m.col1().into(), m.col2().into()])
+    }
+}
+impl From<S3<f64>> for crate::math::Mat3 {
+    fn from(s: S3<f64>) -> Self {
+        Self::new(s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz)
     }
 }
 impl From<crate::math::Mat3> for S3<f64> {

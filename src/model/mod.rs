@@ -91,6 +91,23 @@ pub struct Axis {
     pub switchable: bool,
 }
 
+impl Axis {
+    /// Does a torque on it act? At the pole of a group (`rates`: of all groups) H turns about the same line as B; and nothing acts
+    /// on an axis whose joint has come apart.
+    pub fn is_graspable(&self, rates: &[EulerRates]) -> bool {
+        match self.slot {
+            AxisSlot::Euler { group, angle: 0 } => !rates[group].at_pole,
+            AxisSlot::Apart { .. } => false,
+            _ => true,
+        }
+    }
+
+    /// Has it a range whose ends do not yield?
+    pub fn has_hard_stops(&self) -> bool {
+        (self.lower.is_finite() || self.upper.is_finite()) && self.stop.cfm == 0.0
+    }
+}
+
 /// One link of the URDF.
 #[derive(Clone, Debug)]
 pub struct LinkInfo {
@@ -142,6 +159,15 @@ pub enum LinkFrame {
         /// Link frame in the joint frame after those turns.
         offset: Pose,
     },
+}
+
+impl LinkFrame {
+    /// The body that the link is on, or that its group moves.
+    pub fn body(&self) -> usize {
+        match self {
+            Self::OnBody { body, .. } | Self::InGroup { body, .. } => *body,
+        }
+    }
 }
 
 /// Kinds of joints of the kernel.
@@ -265,6 +291,24 @@ impl Model {
             AxisSlot::Scalar { v, .. } => self.body_of(v),
             AxisSlot::Euler { group, .. } => Some(self.eulers[group].body),
             AxisSlot::Apart { .. } => None,
+        }
+    }
+    /// Writes the gradients of all 3DOF angles at these angles; true if one of the groups is at its pole.
+    pub fn write_rates(&self, angles: &[[f64; 3]], rates: &mut [EulerRates]) -> bool {
+        let mut at_pole = false;
+        for (rates, (group, angles)) in rates.iter_mut().zip(self.eulers.iter().zip(angles)) {
+            *rates = group.rates(*angles);
+            at_pole |= rates.at_pole;
+        }
+        at_pole
+    }
+    /// The body that a collider is on, and its frame there; body 0, the world, for what stands still.
+    pub fn seat_of(&self, c: &Collider) -> (usize, Pose) {
+        match c.link.map(|link| &self.links[link].frame) {
+            Some(LinkFrame::OnBody { body, offset } | LinkFrame::InGroup { body, offset, .. }) => {
+                (*body, offset * c.pose)
+            }
+            None => (0, c.pose),
         }
     }
     /// Gives the model what collides; [`Effects`] are as they would have been with it from the start.

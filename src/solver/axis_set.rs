@@ -8,6 +8,7 @@
 //! A sliding axis moves with the mean of its speeds at the start and the end of the step, of second order. One that stands,
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
+use super::books::Books;
 use super::contacts::Contacts;
 use super::contested::Contest;
 use super::couplings::Couplings;
@@ -16,7 +17,7 @@ use super::mobility::Answers;
 use super::{AxisCommand, AxisInput, Brakes};
 use crate::dynamics::{Workspace, aba_hybrid};
 use crate::math::V3;
-use crate::model::{Axis, AxisSlot, DriveLimits, Effects, EulerRates, Model};
+use crate::model::{Axis, AxisSlot, Effects, EulerRates, Model};
 
 /// Passes that may move all axes at once without getting better.
 const PATIENCE: u32 = 3;
@@ -49,22 +50,11 @@ pub struct StepStart<'a> {
     pub sweeps: u32,
 }
 
-/// Work since the start, J: summed over the steps as h·torque·mean speed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Work {
-    /// Done by the drives.
-    pub drives: f64,
-    /// Taken by damping, friction, stops, soft joints (which may give some of it back).
-    pub losses: f64,
-    /// Taken by contacts: friction, rolling, impacts, less what keeping bodies out of each other lifts them by.
-    pub contacts: f64,
-}
-
 /// Laws and places of all axes. Makes its memory once.
 #[derive(Clone, Debug)]
 pub struct AxisSet {
-    /// The drives as they are now.
-    pub drives: Vec<DriveLimits>,
+    /// The drives, and what became of them.
+    pub books: Books,
     pub(super) laws: Vec<Law>,
     /// Per axis: 2 j on segment j, 2 k + 1 on riser k.
     pub(super) place: Vec<usize>,
@@ -87,16 +77,10 @@ pub struct AxisSet {
     pub(super) turning: Vec<f64>,
     /// Per velocity coordinate: share of the new velocity in the speed with which it moves, ½ or 1.
     pub weight: Vec<f64>,
-    /// Per axis: drive torque really applied.
-    pub effort: Vec<f64>,
-    /// Work since the start.
-    pub work: Work,
     /// Per axis, then per soft direction: work of the last step with the speeds at its start, and at its end, J.
     pub(super) paid: Vec<(f64, f64)>,
     /// The same of the damping of bodies.
     pub(super) damped: (f64, f64),
-    /// By how much an axis was outside its range at most, at the start of a step; rad or m.
-    pub worst_stop: f64,
     /// Per axis: is it a row beside contacts? Empty if nothing can touch.
     pub(super) contests: Vec<Contest>,
     /// Pass of the step.
@@ -116,14 +100,6 @@ pub struct AxisSet {
     pub(super) answers: Option<Box<Answers>>,
 }
 
-impl Work {
-    /// Books the torque of a drive, as part of the total one of its axis, along a way in rad or m.
-    pub(super) fn book(&mut self, drive: f64, total: f64, way: f64) {
-        self.drives += drive * way;
-        self.losses -= (total - drive) * way;
-    }
-}
-
 impl AxisSet {
     /// Room for this model.
     pub fn new(model: &Model) -> Self {
@@ -131,7 +107,7 @@ impl AxisSet {
         let couplings = Couplings::new(model);
         let contested = if couplings.as_ref().is_some_and(|c| c.contacts().is_some()) { n } else { 0 };
         Self {
-            drives: model.axes.iter().map(|a| a.drive).collect(),
+            books: Books::new(model),
             laws: vec![Law::default(); n],
             place: vec![0; n],
             at_end: vec![true; n],
@@ -145,13 +121,10 @@ impl AxisSet {
             rotor: vec![0.0; n],
             turning: vec![0.0; n],
             weight: vec![1.0; model.nv],
-            effort: vec![0.0; n],
             couplings,
             answers: Some(Box::new(Answers::new(model))),
-            work: Work::default(),
             paid: vec![(0.0, 0.0); n + model.softs.len()],
             damped: (0.0, 0.0),
-            worst_stop: 0.0,
             contests: vec![Contest::default(); contested],
             passes: 0,
             h: 0.0,
@@ -166,11 +139,10 @@ impl AxisSet {
     /// Forgets the steps so far.
     pub fn reset(&mut self) {
         self.memory.fill(0);
-        self.effort.fill(0.0);
+        self.books.reset();
         self.stiff.fill(false);
         self.resting.fill(false);
         self.brakes.fill(Brakes::default());
-        (self.work, self.worst_stop) = (Work::default(), 0.0);
         if let Some(couplings) = &mut self.couplings {
             couplings.reset();
         }
@@ -189,22 +161,21 @@ impl AxisSet {
             let (q, v) = self.axis_state(m, axis, start.state);
             self.speed[i] = v;
             if effects.limits {
-                self.worst_stop = self.worst_stop.max(axis.lower - q).max(q - axis.upper);
+                self.books.watch_stop(axis, q);
             }
-            self.rotor[i] = if effects.rotor_inertia { self.drives[i].rotor_inertia } else { 0.0 };
-            let ungraspable = self.ungraspable(axis);
+            self.rotor[i] = self.books.rotor(i, effects);
             let input = AxisInput {
                 axis,
-                limits: &self.drives[i],
+                limits: &self.books.drives[i],
                 command: start.commands[i],
                 q,
                 stuck: self.memory[i] & FRICTION != 0 || v == 0.0,
                 brakes: self.brakes[i],
             };
-            if ungraspable {
-                self.laws[i].clear()
-            } else {
+            if axis.is_graspable(&self.rates) {
                 self.laws[i].set(&input, effects, (start.h, start.whole))
+            } else {
+                self.laws[i].clear()
             }
             self.place[i] = self.laws[i].guess(v, self.memory[i]);
             self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
@@ -219,16 +190,6 @@ impl AxisSet {
     #[inline(always)]
     pub(super) fn rests(&self, axis: usize) -> bool {
         self.resting.get(axis) == Some(&true)
-    }
-
-    /// At the pole of a group, H has no torque of its own: it turns about the same line as B. Nothing acts on an axis whose
-    /// joint has come apart.
-    fn ungraspable(&self, axis: &Axis) -> bool {
-        match axis.slot {
-            AxisSlot::Euler { group, angle: 0 } => self.rates[group].at_pole,
-            AxisSlot::Apart { .. } => true,
-            _ => false,
-        }
     }
 
     pub(super) fn axis_state(&self, m: &Model, axis: &Axis, s: StateRef) -> (f64, f64) {
@@ -381,9 +342,9 @@ impl AxisSet {
                 torques
             };
             self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
-            self.effort[i] = effort;
+            self.books.effort[i] = effort;
             self.paid[i] = (0.5 * h * total * self.speed[i], 0.5 * h * total * end);
-            self.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
+            self.books.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
         }
     }
 
@@ -455,12 +416,7 @@ impl AxisSet {
 
     /// Gradients of the angles at these angles; true if a 3DOF group is at its pole.
     pub fn update_rates(&mut self, m: &Model, angles: &[[f64; 3]]) -> bool {
-        let mut at_pole = false;
-        for (rates, (group, angles)) in self.rates.iter_mut().zip(m.eulers.iter().zip(angles)) {
-            *rates = group.rates(*angles);
-            at_pole |= rates.at_pole;
-        }
-        at_pole
+        m.write_rates(angles, &mut self.rates)
     }
 
     /// Rate of an axis for rates of the velocity coordinates: its speed from velocities, its acceleration from

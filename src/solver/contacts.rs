@@ -350,8 +350,7 @@ pub(super) fn end_velocities(m: &Model, pass: &Pass, qdd: &[f64], out: &mut [f64
 
 /// Velocity of side 1 against side 0 at a point, along the world's axes.
 fn approach(k: &Kinematics, touch: &Touch, point: V3<f64>) -> V3<f64> {
-    let at = |body: usize| k.r[body].mv(k.v[body]) + k.r[body].mv(k.w[body]).cross(point - k.p[body]);
-    at(touch.bodies[1]) - at(touch.bodies[0])
+    k.velocity_at(touch.bodies[1], point) - k.velocity_at(touch.bodies[0], point)
 }
 
 /// Angular velocity of side 1 against side 0, along the world's axes.

@@ -7,7 +7,7 @@ use super::contacts::{Contacts, Pass};
 use super::lifting::Reached;
 use super::rows::{Kind, Rows};
 use crate::dynamics::{Push, Response, Workspace};
-use crate::model::{AxisSlot, Coupling, Model};
+use crate::model::{AxisSlot, Coupling, EulerRates, Model};
 
 /// Share of a follower's deviation that one step takes back, by a speed. The rows keep the velocities together to rounding, so it
 /// has only rounding, the curvature of a 3DOF group's angles and what an unsettled step has left to take back.
@@ -197,8 +197,16 @@ impl Seat {
         self.body
     }
 
-    pub fn index(&self) -> usize {
-        self.index
+    /// The force that is `factor` along this joint's axis in a slot.
+    pub fn push(&self, slot: &AxisSlot, rates: &[EulerRates], factor: f64) -> Push {
+        let mut push = Push { body: self.body, ..Push::default() };
+        if let AxisSlot::Euler { group, angle } = slot {
+            let g = rates[*group].gradient[*angle] * factor;
+            push.own[..3].copy_from_slice(&[g.x, g.y, g.z]);
+        } else {
+            push.own[self.index] = factor;
+        }
+        push
     }
 }
 
@@ -404,13 +412,6 @@ impl AxisSet {
 
     /// The force that is `factor` along an axis.
     pub(super) fn push_of(&self, m: &Model, axis: usize, seat: Seat, factor: f64) -> Push {
-        let mut push = Push { body: seat.body, ..Push::default() };
-        if let AxisSlot::Euler { group, angle } = m.axes[axis].slot {
-            let g = self.rates[group].gradient[angle] * factor;
-            push.own[..3].copy_from_slice(&[g.x, g.y, g.z]);
-        } else {
-            push.own[seat.index] = factor;
-        }
-        push
+        seat.push(&m.axes[axis].slot, &self.rates, factor)
     }
 }

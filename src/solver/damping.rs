@@ -16,6 +16,6 @@ impl AxisSet {
     ) {
         let [start, end] = damping_powers(m, ws, q, [&|k| v[k], &|k| v[k] + h * qdd[k]]);
         self.damped = (0.5 * h * start, 0.5 * h * end);
-        self.work.losses -= 0.5 * h * (start + end);
+        self.books.work.losses -= 0.5 * h * (start + end);
     }
 }

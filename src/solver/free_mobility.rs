@@ -49,13 +49,7 @@ impl FreeMobility {
     /// [`FreeMobility::refresh`].
     pub fn of(&mut self, m: &Model, q: &[f64], rates: &[EulerRates], axis: usize) -> f64 {
         let Some((seat, chunks)) = &self.seats[axis] else { return 0.0 };
-        let mut push = Push { body: seat.body(), ..Push::default() };
-        if let AxisSlot::Euler { group, angle } = m.axes[axis].slot {
-            let g = rates[group].gradient[angle];
-            push.own[..3].copy_from_slice(&[g.x, g.y, g.z]);
-        } else {
-            push.own[seat.index()] = 1.0;
-        }
+        let push = seat.push(&m.axes[axis].slot, rates, 1.0);
         let room = (&chunks[..], &mut self.numbers[..]);
         self.response.row(m, &self.ws, q, &[push, Push::default()], room).free
     }

@@ -4,6 +4,7 @@
 //! together are solved as a set ([`AxisSet`]) with the hybrid dynamics.
 
 mod axis_set;
+mod books;
 mod command;
 mod cone;
 mod contacts;
@@ -27,7 +28,8 @@ mod smooth;
 mod soft;
 mod yielding;
 
-pub use axis_set::{AxisSet, StateRef, StepStart, Work};
+pub use axis_set::{AxisSet, StateRef, StepStart};
+pub use books::{Books, Work};
 pub use command::{AxisCommand, Mode};
 pub use cone::{ConeBlock, Plane, disc};
 pub use contacts::{ContactPoint, Contacts};

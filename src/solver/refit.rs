@@ -16,7 +16,7 @@ impl AxisSet {
         self.answers = Some(Box::new(Answers::new(m)));
         for (i, axis) in m.axes.iter().enumerate() {
             if matches!(axis.slot, AxisSlot::Apart { .. }) {
-                (self.memory[i], self.effort[i], self.speed[i]) = (0, 0.0, 0.0);
+                (self.memory[i], self.books.effort[i], self.speed[i]) = (0, 0.0, 0.0);
             }
         }
     }

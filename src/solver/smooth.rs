@@ -83,10 +83,10 @@ impl AxisSet {
             let standing = self.place[i] % 2 == 1;
             self.memory[i] = if standing { law.knots[k].kinds } else { 0 };
             let riser = standing.then(|| (k, self.riser_torque(m, ws, i, qdd)));
-            self.effort[i] = law.drive_torque(v, riser);
+            self.books.effort[i] = law.drive_torque(v, riser);
             if !standing {
                 let mean = 0.5 * (self.speed[i] + v);
-                self.work.book(law.drive_torque(mean, None), law.on_segment(k, mean), h * mean);
+                self.books.work.book(law.drive_torque(mean, None), law.on_segment(k, mean), h * mean);
             }
         }
     }

@@ -38,7 +38,7 @@ impl AxisSet {
             let force = if input.free > 0.0 { input.tau - input.diagonal * a } else { ws.reaction[soft.v] };
             let (start, end) = (v[soft.v], v[soft.v] + h * a);
             self.paid[m.axes.len() + k] = (0.5 * h * force * start, 0.5 * h * force * end);
-            self.work.losses -= 0.5 * h * force * (start + end);
+            self.books.work.losses -= 0.5 * h * force * (start + end);
         }
     }
 }

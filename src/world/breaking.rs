@@ -77,7 +77,7 @@ impl World {
         self.engine.refit(&model, state, step.integrator);
         self.take(Arc::new(model));
         // The rotor of an axis that is apart turns on where nobody looks.
-        self.engine.work_mut().losses += rotors - self.rotor_energy();
+        self.engine.books_mut().work.losses += rotors - self.rotor_energy();
     }
 
     /// Goes back to the model with all its joints.

@@ -6,7 +6,7 @@ use crate::model::{DriveLimits, Effects};
 impl World {
     /// The drive of an axis as it is now.
     pub fn drive(&self, axis: usize) -> Option<&DriveLimits> {
-        self.engine.drives().get(axis)
+        self.engine.books().drives.get(axis)
     }
 
     /// Changes the drive of an axis, with effect from the next step; allocates nothing unless it is refused. An effect that
@@ -15,7 +15,7 @@ impl World {
     /// # Errors
     /// Says which value is out of range; nothing changes then.
     pub fn set_drive(&mut self, axis: usize, drive: DriveLimits) -> Result<(), String> {
-        let Some(present) = self.engine.drives_mut().get_mut(axis) else {
+        let Some(present) = self.engine.books_mut().drives.get_mut(axis) else {
             return Err(format!("axis {axis} does not exist; there are {}", self.model.axes.len()));
         };
         drive.check()?;

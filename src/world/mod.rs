@@ -138,8 +138,8 @@ impl World {
     fn rebuilt(&self, settings: &Settings) -> Result<Box<dyn Engine>, String> {
         let mut engine = settings.engine.build(&self.model, self.engine.state())?;
         engine.prepare(&self.model, settings.integrator);
-        engine.drives_mut().copy_from_slice(self.engine.drives());
-        *engine.work_mut() = self.engine.work();
+        engine.books_mut().drives.copy_from_slice(&self.engine.books().drives);
+        engine.books_mut().work = self.engine.books().work;
         Ok(engine)
     }
 
@@ -165,7 +165,7 @@ impl World {
 
     /// Per axis, N·m or N: the drive torque really applied in the last step.
     pub fn efforts(&self) -> &[f64] {
-        self.engine.efforts()
+        &self.engine.books().effort
     }
 
     /// The state.
@@ -242,7 +242,7 @@ impl World {
         s.worst_residual = s.worst_residual.max(report.residual);
         s.trimmed_energy += report.trimmed_energy;
         s.tempered_steps += u64::from(report.tempered);
-        s.worst_stop_violation = self.engine.worst_stop();
+        s.worst_stop_violation = self.engine.books().worst_stop;
         s.pole_steps += u64::from(report.at_pole);
         s.diverged_steps += u64::from(report.diverged);
     }
@@ -304,7 +304,7 @@ impl World {
         for i in 0..m.axes.len() {
             (s.position[i], s.velocity[i]) = state.axis(m, i);
         }
-        s.effort.copy_from_slice(self.engine.efforts());
+        s.effort.copy_from_slice(&self.engine.books().effort);
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
             s.cut_off[link] = m.links[link].parent.is_none() && !m.is_root(link);
@@ -336,14 +336,14 @@ impl World {
         if !self.effects.rotor_inertia {
             return 0.0;
         }
-        self.state().rotor_energy(&self.model, self.engine.drives().iter().map(|d| d.rotor_inertia))
+        self.state().rotor_energy(&self.model, self.engine.books().drives.iter().map(|d| d.rotor_inertia))
     }
 
     /// Work of the drives, losses at the axes and at contacts since the start or the last reset, J. With [`World::energy`] and
     /// what the counters say was taken out it shows the error of the integrator: what the energy has gained beyond
     /// `drives − losses − contacts`.
     pub fn work(&self) -> Work {
-        self.engine.work()
+        self.engine.books().work
     }
 
     /// Momentum in the world frame, about the common centre of mass.

@@ -1,21 +1,13 @@
 //! Free bodies and their contacts. Bounds are of the method: leapfrog is exact in a fall; facts/engines.md D has what Bullet's
 //! friction and its gyroscopic term do.
 
-use super::touching::{ball, cubes, cuboid, free_body, ground, on_link, rest, surface};
+use super::touching::{ball, cubes, cuboid, free_body, ground, on_link, rest, stack, start, surface};
 use super::{G, run, world};
 use realnoid::engine::State;
 use realnoid::math::{Pose, Vec3};
 use realnoid::model::{Collider, Model, Surface};
 use realnoid::shape::ContactForm;
 use realnoid::world::World;
-
-fn start(w: &mut World, z: f64, angular: Vec3, linear: Vec3) {
-    let m = w.model().clone();
-    let mut s = State::initial(&m);
-    s.set_base_pose(&m, [0.0, 0.0, z], [0.0, 0.0, 0.0, 1.0]);
-    s.set_base_twist(&m, angular, linear);
-    w.set_initial_state(s);
-}
 
 #[test]
 fn a_free_body_falls() {
@@ -88,11 +80,7 @@ fn a_ball_bounces() {
 fn a_tower_stands() {
     let m = cubes(&[1.0; 5], 0.1, surface(1.0), ground(1.0));
     let mut w = world(m.clone(), 1e-3);
-    let mut s = State::initial(&m);
-    for k in 0..5 {
-        s.q[7 * k + 2] = 0.1 + 0.2 * k as f64;
-    }
-    w.set_initial_state(s);
+    stack(&mut w);
     run(&mut w, 3.0);
     for k in 0..5 {
         let q = &w.state().q[7 * k..];
@@ -196,11 +184,7 @@ fn a_body_falls_asleep_and_wakes() {
 fn a_copy_goes_on_nearly_alike() {
     let m = cubes(&[1.0; 3], 0.1, surface(1.0), ground(1.0));
     let mut w = world(m.clone(), 1e-3);
-    let mut s = State::initial(&m);
-    for k in 0..3 {
-        s.q[7 * k + 2] = 0.1 + 0.2 * k as f64;
-    }
-    w.set_initial_state(s);
+    stack(&mut w);
     run(&mut w, 0.5);
     let mut copy = w.clone();
     assert!(copy.state().q.iter().zip(&w.state().q).all(|(a, b)| a == b));

@@ -1,6 +1,6 @@
 //! Links and joints.
 
-use super::{G, engines, link, run, scene_file, support, world};
+use super::{G, engines, link, run, scene_file, support, weightless, world};
 use realnoid::math::Vec3;
 use realnoid::model::{Base, Model};
 use realnoid::world::{AxisCommand, EngineKind, World};
@@ -74,10 +74,7 @@ fn a_torque_against_damping() {
     let m =
         pendulum(&format!("{}<dynamics damping='0.5'/>", WIDE.replace("-3", "-1000").replace("='3'", "='1000'")), "");
     for engine in engines().into_iter().filter(|e| e.capabilities().joints) {
-        let mut w = world(&m, engine);
-        let mut s = *w.settings();
-        s.gravity = [0.0; 3];
-        w.set_settings(s).unwrap();
+        let mut w = weightless(&m, engine);
         w.set_commands(&[AxisCommand::torque(2.0)]).unwrap();
         run(&mut w, 1.0);
         // I ω̇ = τ − d ω about the axis, I = 0.06 + 2 · 0.3².
@@ -182,10 +179,7 @@ fn a_hook_breaks_under_its_load() {
 fn a_rotor_counts() {
     let m = pendulum(WIDE, "<drive mode='torque' max_torque='40' rotor_inertia='0.5'/>");
     for engine in engines().into_iter().filter(|e| e.capabilities().rotor_inertia) {
-        let mut w = world(&m, engine);
-        let mut s = *w.settings();
-        s.gravity = [0.0; 3];
-        w.set_settings(s).unwrap();
+        let mut w = weightless(&m, engine);
         w.set_commands(&[AxisCommand::torque(3.0)]).unwrap();
         run(&mut w, 0.5);
         let (_, v) = w.state().axis(&m, 0);

@@ -2,8 +2,9 @@
 #![allow(dead_code)] // each test uses a part
 
 use realnoid::description;
+use realnoid::engine::State;
 use realnoid::mass::link_bodies;
-use realnoid::math::Pose;
+use realnoid::math::{Pose, Vec3};
 use realnoid::model::{Base, Collider, Model, Surface};
 use realnoid::shape::{ContactForm, Meshes};
 use realnoid::world::{Integrator, Settings, World};
@@ -174,4 +175,22 @@ pub fn chain_with_ball(links: usize, length: f64, ratio: f64, floor: Collider) -
     let pose = Pose::translation(length / 2.0, 0.0, 0.0);
     m.set_colliders(vec![floor, Collider { pose, ..c }]);
     m
+}
+
+/// Puts a single body at height z with this twist.
+pub fn start(w: &mut World, z: f64, angular: Vec3, linear: Vec3) {
+    let m = w.model().clone();
+    let mut s = State::initial(&m);
+    s.set_base_pose(&m, [0.0, 0.0, z], [0.0, 0.0, 0.0, 1.0]);
+    s.set_base_twist(&m, angular, linear);
+    w.set_initial_state(s);
+}
+
+/// Puts floating bodies of height 0.2 m on each other, from the ground up.
+pub fn stack(w: &mut World) {
+    let mut s = State::initial(w.model());
+    for k in 0..w.model().bodies.len() - 1 {
+        s.q[7 * k + 2] = 0.1 + 0.2 * k as f64;
+    }
+    w.set_initial_state(s);
 }

@@ -3,7 +3,7 @@
 use super::contender::{Contender, Course};
 use super::difference::{MEASURES, exists, name_of};
 use super::{Contest, FINER, notes};
-use crate::engine::Shortfall;
+use crate::engine::{Shortfall, by_kind};
 use std::fmt::Write;
 
 /// Everything, for people.
@@ -123,13 +123,6 @@ fn about_engine(c: &Contest, run: &Contender) -> String {
 
 /// Items of the same kind together: the first one, and how many others there are.
 fn grouped(shortfalls: &[Shortfall]) -> Vec<String> {
-    let mut groups: Vec<(&Shortfall, usize)> = vec![];
-    for s in shortfalls {
-        match groups.iter_mut().find(|(first, _)| first.item == s.item && first.instead == s.instead) {
-            Some((_, others)) => *others += 1,
-            None => groups.push((s, 0)),
-        }
-    }
     let told = |(s, others): (&Shortfall, usize)| match others {
         0 => s.to_string(),
         n => {
@@ -137,7 +130,7 @@ fn grouped(shortfalls: &[Shortfall]) -> Vec<String> {
             Shortfall { element, ..s.clone() }.to_string()
         }
     };
-    groups.into_iter().map(told).collect()
+    by_kind(shortfalls.iter(), |s| s).into_iter().map(told).collect()
 }
 
 #[cfg(test)]

@@ -9,13 +9,13 @@ mod shapes;
 mod turns;
 
 use super::actuation::{Actuation, Start};
-use super::maximal::{carry, read_state};
+use super::maximal::read_state;
 use super::sleep::same;
 use super::{Engine, EngineKind, Integrator, State, StepReport, StepSettings};
-use crate::dynamics::{Kinematics, kinematics};
+use crate::dynamics::{Kinematics, kinematics, kinematics_of};
 use crate::math::{M3, V3, Vec3};
-use crate::model::{AxisSlot, DriveLimits, Model};
-use crate::solver::{AxisCommand, ContactPoint, Work};
+use crate::model::{AxisSlot, Model};
+use crate::solver::{AxisCommand, Books, ContactPoint};
 use bridge::{Contact, MotorInput, Moving, StepInput, World};
 use cxx::UniquePtr;
 use plan::Plan;
@@ -189,9 +189,7 @@ impl Bullet {
         for link in self.plan.links.iter().filter(|l| !l.turns.is_empty()) {
             turns::read(m, link, &self.k, &mut self.state);
         }
-        for body in &self.plan.carried {
-            carry(m, &self.state, &mut self.k, *body);
-        }
+        kinematics_of(m, &mut self.k, (&self.state.q, &self.state.v), &self.plan.carried);
         self.drift = self.drift.max(read_state(m, &self.k, &mut self.state).linear);
     }
 
@@ -220,7 +218,7 @@ impl Bullet {
     fn advance(&mut self, m: &Model, s: &StepSettings) -> Result<(), String> {
         let input = StepInput { h: s.h, gravity: s.gravity, iterations: i32::try_from(s.passes).unwrap_or(i32::MAX) };
         let (inputs, given, bodies) = (&self.inputs, &mut self.given, &mut self.bodies);
-        let world = self.world.0.get_mut().unwrap_or_else(PoisonError::into_inner).as_mut().map_err(|e| e.clone())?;
+        let world = self.world.get().as_mut().map_err(|e| e.clone())?;
         let world = world.as_mut().ok_or_else(String::new)?;
         world.step(&input, inputs, given, bodies).map_err(|e| format!("bullet: {e}"))?;
         self.read_contacts(m)
@@ -264,7 +262,7 @@ impl Engine for Bullet {
         }
         self.read_motors(m);
         self.read(m);
-        let finite = self.state.q.iter().chain(&self.state.v).all(|x| x.is_finite());
+        let finite = self.state.finite();
         if finite {
             self.actuation.finish(m, (s.h, s.h), &self.state, &self.motors);
         } else {
@@ -341,28 +339,12 @@ impl Engine for Bullet {
         &self.received
     }
 
-    fn drives(&self) -> &[DriveLimits] {
-        &self.actuation.drives
+    fn books(&self) -> &Books {
+        &self.actuation.books
     }
 
-    fn drives_mut(&mut self) -> &mut [DriveLimits] {
-        &mut self.actuation.drives
-    }
-
-    fn efforts(&self) -> &[f64] {
-        &self.actuation.effort
-    }
-
-    fn work(&self) -> Work {
-        self.actuation.work
-    }
-
-    fn work_mut(&mut self) -> &mut Work {
-        &mut self.actuation.work
-    }
-
-    fn worst_stop(&self) -> f64 {
-        self.actuation.worst_stop
+    fn books_mut(&mut self) -> &mut Books {
+        &mut self.actuation.books
     }
 
     fn joint_drift(&self) -> f64 {

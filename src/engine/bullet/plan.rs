@@ -3,6 +3,7 @@
 
 use super::bridge::{BodySpec, JointSpec, Motor, Moving, Spec};
 use super::shapes;
+use crate::engine::honour::name_of;
 use crate::math::{Mat3, Pose, Quat, Vec3};
 use crate::model::{Axis, AxisSlot, Body, JointType, Model, Softness};
 use nalgebra::{Rotation3, SymmetricEigen, Translation3, UnitQuaternion};
@@ -101,13 +102,13 @@ impl Plan {
         let b = &m.bodies[body];
         let center = Vec3::from(b.mc) / b.mass;
         let square = Mat3::from_diagonal_element(center.norm_squared()) - center * center.transpose();
-        let inertia = tensor(b) - square * b.mass;
+        let inertia = Mat3::from(b.inertia) - square * b.mass;
         let principal = SymmetricEigen::new(inertia);
         let moments = principal.eigenvalues;
         if !moments.iter().all(|x| *x > 0.0 && x.is_finite()) {
             return Err(format!(
                 "{} has the principal moments of inertia {:e}, {:e}, {:e} kg·m²; bullet needs all of them above 0",
-                named(m, body),
+                name_of(m, body),
                 moments[0],
                 moments[1],
                 moments[2]
@@ -119,7 +120,7 @@ impl Plan {
         }
         let moments = (axes.transpose() * inertia * axes).diagonal();
         let damping = m.dampings.iter().find(|d| d.body == body && m.effects.body_damping);
-        let rest = crate::engine::sleep::limit(m, body).filter(|_| m.effects.deactivation);
+        let rest = crate::engine::sleep::limit(m, body);
         self.spec.bodies.push(BodySpec {
             mass: b.mass,
             inertia: moments.into(),
@@ -138,7 +139,7 @@ impl Plan {
             let alone = if chain.len() == 1 {
                 Ok(())
             } else {
-                Err(format!("{} floats on a body without mass", named(m, child)))
+                Err(format!("{} floats on a body without mass", name_of(m, child)))
             };
             return alone;
         }
@@ -174,8 +175,7 @@ impl Plan {
         let Some(axis) = free.axis else { return };
         let a = &m.axes[axis];
         // Soft ones are part of the law of the axis.
-        let bounded = a.lower.is_finite() || a.upper.is_finite();
-        let stops = m.effects.limits && bounded && a.stop.cfm == 0.0;
+        let stops = m.effects.limits && a.has_hard_stops();
         let far = stops && !native(a);
         if stops {
             (joint.erp[free.dof], joint.cfm[free.dof]) = (a.stop.erp, 0.0);
@@ -258,7 +258,7 @@ impl Shape {
                 "there is no mass between {} axes before {}; bullet can take that only of two or three hinges that meet in \
                  one point at right angles: give the links between them a mass",
                 hinges.len(),
-                named(m, last)
+                name_of(m, last)
             ));
         }
         // Two: about z, then x. Three: about z, y, x.
@@ -288,7 +288,7 @@ fn chain(m: &Model, child: usize) -> Result<Vec<usize>, String> {
         if others && softness(m, parent).is_none() {
             return Err(format!(
                 "{} has no mass, but more than one body hangs on it; bullet cannot take that: give it a mass",
-                named(m, parent)
+                name_of(m, parent)
             ));
         }
         chain.insert(0, parent);
@@ -311,15 +311,6 @@ fn euler(m: &Model, group: usize, angle: usize) -> Option<usize> {
     m.axes.iter().position(|a| a.slot == AxisSlot::Euler { group, angle })
 }
 
-/// For messages: the link on a body.
-fn named(m: &Model, body: usize) -> String {
-    use crate::model::LinkFrame;
-    let on = |f: &LinkFrame| matches!(f, LinkFrame::OnBody { body: b, .. } if *b == body);
-    let inside = |f: &LinkFrame| matches!(f, LinkFrame::InGroup { body: b, .. } if *b == body);
-    let link = m.links.iter().find(|l| on(&l.frame)).or_else(|| m.links.iter().find(|l| inside(&l.frame)));
-    link.map_or_else(|| format!("body {body}"), |l| format!("link '{}'", l.name))
-}
-
 fn excluded(m: &Model) -> Vec<i32> {
     m.excluded_pairs.iter().flatten().map(|link| number(*link)).collect()
 }
@@ -327,11 +318,6 @@ fn excluded(m: &Model) -> Vec<i32> {
 /// Bullet counts in 32 bits.
 pub(super) fn number(index: usize) -> i32 {
     i32::try_from(index).unwrap_or(i32::MAX)
-}
-
-fn tensor(b: &Body) -> Mat3 {
-    let i = &b.inertia;
-    Mat3::new(i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz)
 }
 
 fn tree(b: &Body) -> Pose {

@@ -3,7 +3,7 @@
 use super::bridge::{ShapeKind, ShapeSpec};
 use super::plan::{Seat, array, number};
 use crate::math::Pose;
-use crate::model::{Collider, LinkFrame, Model, Surface};
+use crate::model::{Collider, Model, Surface};
 use crate::shape::ContactForm;
 
 /// One for each collider of the model, in its order.
@@ -15,10 +15,7 @@ pub(super) fn specs(m: &Model, bodies: &[Seat], index: &[Option<usize>]) -> Resu
 }
 
 fn spec(m: &Model, c: &Collider, bodies: &[Seat], index: &[Option<usize>]) -> Result<ShapeSpec, String> {
-    let (body, x_bl) = match c.link.map(|l| &m.links[l].frame) {
-        Some(LinkFrame::OnBody { body, offset } | LinkFrame::InGroup { body, offset, .. }) => (*body, offset * c.pose),
-        None => (0, c.pose),
-    };
+    let (body, x_bl) = m.seat_of(c);
     let seat = match index[body] {
         Some(i) => bodies[i].frame,
         None if body == 0 => Pose::identity(),

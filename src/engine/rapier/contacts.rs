@@ -6,7 +6,7 @@ use super::shapes::shape;
 use super::sim::Sim;
 use crate::dynamics::Kinematics;
 use crate::math::V3;
-use crate::model::{Collider, LinkFrame, Model};
+use crate::model::Model;
 use crate::solver::ContactPoint;
 use rapier3d_f64::pipeline::{ActiveHooks, PairFilterContext, PhysicsHooks};
 use rapier3d_f64::prelude::{CoefficientCombineRule, ColliderBuilder, ContactManifold, ContactPair, SolverFlags};
@@ -46,21 +46,13 @@ impl PhysicsHooks for Filter<'_> {
     }
 }
 
-/// The body of a collider, and its frame there.
-fn place(m: &Model, c: &Collider) -> (usize, crate::math::Pose) {
-    match c.link.map(|l| &m.links[l].frame) {
-        Some(LinkFrame::OnBody { body, offset } | LinkFrame::InGroup { body, offset, .. }) => (*body, offset * c.pose),
-        None => (0, c.pose),
-    }
-}
-
 /// Puts all colliders on their bodies.
 pub(super) fn insert_colliders(m: &Model, sim: &mut Sim, parts: &Parts) {
     if !m.effects.contact {
         return;
     }
     for (i, c) in m.colliders.iter().enumerate() {
-        let (body, at) = place(m, c);
+        let (body, at) = m.seat_of(c);
         let (Some((shape, own)), Some(handle)) = (shape(&c.form), parts.handles[body]) else { continue };
         let collider = ColliderBuilder::new(shape)
             .position(pose(&at) * own)
@@ -153,8 +145,8 @@ impl Contacts {
     /// velocities at its ends, which is exact for impacts.
     pub fn taken(&self, m: &Model, ends: [&Kinematics; 2], h: f64) -> f64 {
         let done = self.points.iter().map(|p| {
-            let bodies = p.colliders.map(|c| place(m, &m.colliders[c]).0);
-            let apart = |k: &Kinematics| velocity(k, bodies[1], p.point) - velocity(k, bodies[0], p.point);
+            let bodies = p.colliders.map(|c| m.seat_of(&m.colliders[c]).0);
+            let apart = |k: &Kinematics| k.velocity_at(bodies[1], p.point) - k.velocity_at(bodies[0], p.point);
             0.5 * h * p.force.dot(apart(ends[0]) + apart(ends[1]))
         });
         -done.sum::<f64>()
@@ -170,7 +162,7 @@ impl Contacts {
             if surface.rolling <= 0.0 && surface.spinning <= 0.0 {
                 continue;
             }
-            let bodies = p.colliders.map(|c| place(m, &m.colliders[c]).0);
+            let bodies = p.colliders.map(|c| m.seat_of(&m.colliders[c]).0);
             let pressed = h * p.force.dot(p.normal);
             let turn = spin(sim, parts, bodies[1]) - spin(sim, parts, bodies[0]);
             let about = p.normal * turn.dot(p.normal);
@@ -179,12 +171,6 @@ impl Contacts {
             }
         }
     }
-}
-
-/// Of a body at a point of the world, m/s.
-fn velocity(k: &Kinematics, body: usize, at: V3<f64>) -> V3<f64> {
-    let arm = k.r[body].tv(at - k.p[body]);
-    k.r[body].mv(k.w[body].cross_add(arm, k.v[body]))
 }
 
 /// Angular velocity in the world, rad/s.
@@ -217,6 +203,6 @@ fn sides(m: &Model, sim: &Sim, pair: &ContactPair) -> Option<Sides> {
     let (a, b) = (index(pair.collider1)?, index(pair.collider2)?);
     let swapped = a > b;
     let colliders = [a.min(b), a.max(b)];
-    let bodies = colliders.map(|c| m.colliders.get(c).map_or(0, |c| place(m, c).0));
+    let bodies = colliders.map(|c| m.colliders.get(c).map_or(0, |c| m.seat_of(c).0));
     Some(Sides { colliders, bodies, swapped })
 }

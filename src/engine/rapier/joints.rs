@@ -188,12 +188,10 @@ impl Row {
         let (first, second) = ((parent, at), (child, Pose::IDENTITY));
         let (first, second) = if swapped { (second, first) } else { (first, second) };
         let joint = |sim: &mut Sim| insert(sim, parts, first, second, JointAxesMask::empty());
-        let a = &m.axes[axis];
-        let bounded = (a.lower.is_finite() || a.upper.is_finite()) && a.stop.cfm == 0.0;
         // A hinge turns about the same axis as its joint: one joint for all. Its stops are solved with its locks then.
         let hinge = holds[child].filter(|_| b.joint == JointType::Revolute);
         let motor = hinge.or_else(|| joint(sim))?;
-        let stop = if bounded { hinge.or_else(|| joint(sim)) } else { None };
+        let stop = if m.axes[axis].has_hard_stops() { hinge.or_else(|| joint(sim)) } else { None };
         Some(Self { along, axis: row_axis, swapped, parent, child, motor, stop, length: 1.0 })
     }
 
@@ -240,7 +238,7 @@ impl Row {
             let turned = facing(g * (1.0 / self.length));
             let child = self.child;
             joint.data.local_frame1 = frame(&turned, V3::default());
-            let relative = super::super::maximal::transposed_times(&k.r[self.parent], &k.r[child]);
+            let relative = k.r[self.parent].tmm(&k.r[child]);
             joint.data.local_frame2 = frame(&relative.mm(&turned), V3::default());
             (from, to) = (from / self.length, to / self.length);
         } else {

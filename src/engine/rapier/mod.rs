@@ -17,12 +17,12 @@ mod sim;
 
 use super::actuation::{Actuation, Start};
 use super::maximal::{Gap, read_state};
-use super::sleep::limit;
+use super::sleep::same;
 use super::{Engine, EngineKind, Integrator, State, StepReport, StepSettings};
 use crate::dynamics::{Kinematics, kinematics};
 use crate::math::V3;
-use crate::model::{Deactivation, DriveLimits, Model};
-use crate::solver::{AxisCommand, ContactPoint, Work};
+use crate::model::Model;
+use crate::solver::{AxisCommand, Books, ContactPoint};
 pub use honour::shortfalls;
 
 use contacts::{Contacts, Filter, insert_colliders};
@@ -108,13 +108,13 @@ impl Rapier {
         let substep = part.h / f64::from(part.substeps);
         self.contacts.read(m, &self.sim, (part.h, part.whole, substep));
         self.contacts.roll(m, &mut self.sim, &self.parts, (&self.k, part.h));
-        self.laws.work.contacts += std::mem::take(&mut self.contacts.rolled);
+        self.laws.books.work.contacts += std::mem::take(&mut self.contacts.rolled);
         if s.effects.body_damping {
             self.damp(m, part.h);
         }
         self.from.copy_from(&self.k);
         self.parts.read(m, &self.sim, &self.state, &mut self.k);
-        self.laws.work.contacts += self.contacts.taken(m, [&self.from, &self.k], part.h);
+        self.laws.books.work.contacts += self.contacts.taken(m, [&self.from, &self.k], part.h);
         let gap = read_state(m, &self.k, &mut self.state);
         let finite = sound && self.state.finite();
         if finite {
@@ -151,7 +151,7 @@ impl Rapier {
 
     /// What rests comes back when it is told something new.
     fn listen(&mut self, commands: &[AxisCommand], gravity: [f64; 3]) {
-        let news = self.last.1 != gravity || !self.last.0.iter().zip(commands).all(|(a, b)| super::sleep::same(a, b));
+        let news = self.last.1 != gravity || !self.last.0.iter().zip(commands).all(|(a, b)| same(a, b));
         if news {
             self.last.0.copy_from_slice(commands);
             self.last.1 = gravity;
@@ -174,14 +174,10 @@ fn build(m: &Model, state: &mut State, k: &mut Kinematics) -> (Sim, Parts, Rows)
     *k = Kinematics::new(m);
     kinematics(m, k, &state.q, &state.v);
     let mut sim = Sim::new();
-    let parts = Parts::new(m, &mut sim, k, |body| deactivation(m, body));
+    let parts = Parts::new(m, &mut sim, k);
     let rows = Rows::new(m, &mut sim, &parts, &state.q);
     insert_colliders(m, &mut sim, &parts);
     (sim, parts, rows)
-}
-
-fn deactivation(m: &Model, body: usize) -> Option<Deactivation> {
-    limit(m, body).filter(|_| m.effects.deactivation)
 }
 
 impl Engine for Rapier {
@@ -262,28 +258,12 @@ impl Engine for Rapier {
         if self.has_contacts() { &self.contacts.received } else { &[] }
     }
 
-    fn drives(&self) -> &[DriveLimits] {
-        &self.laws.drives
+    fn books(&self) -> &Books {
+        &self.laws.books
     }
 
-    fn drives_mut(&mut self) -> &mut [DriveLimits] {
-        &mut self.laws.drives
-    }
-
-    fn efforts(&self) -> &[f64] {
-        &self.laws.effort
-    }
-
-    fn work(&self) -> Work {
-        self.laws.work
-    }
-
-    fn work_mut(&mut self) -> &mut Work {
-        &mut self.laws.work
-    }
-
-    fn worst_stop(&self) -> f64 {
-        self.laws.worst_stop
+    fn books_mut(&mut self) -> &mut Books {
+        &mut self.laws.books
     }
 
     fn joint_drift(&self) -> f64 {

@@ -2,10 +2,10 @@
 
 use super::convert::{axes, frame, ours, vector};
 use super::sim::Sim;
-use crate::dynamics::Kinematics;
+use crate::dynamics::{Kinematics, kinematics_of};
 use crate::engine::State;
-use crate::engine::maximal::carry;
-use crate::math::{S3, V3};
+use crate::engine::sleep::limit;
+use crate::math::{Mat3, S3, V3};
 use crate::model::{Body, Deactivation, Model};
 use rapier3d_f64::math::Matrix;
 use rapier3d_f64::prelude::{MassProperties, RigidBodyBuilder, RigidBodyHandle};
@@ -46,8 +46,8 @@ pub(super) fn embodied(m: &Model) -> impl Iterator<Item = usize> {
 }
 
 impl Parts {
-    /// Makes them at these poses; `limits`: when each may leave the computation.
-    pub fn new(m: &Model, sim: &mut Sim, k: &Kinematics, limits: impl Fn(usize) -> Option<Deactivation>) -> Self {
+    /// Makes them at these poses.
+    pub fn new(m: &Model, sim: &mut Sim, k: &Kinematics) -> Self {
         let n = m.bodies.len();
         let mut parts = Self {
             handles: vec![None; n],
@@ -62,7 +62,7 @@ impl Parts {
             (parts.masses[i], parts.centers[i]) = ((mass, inertia), center);
         }
         for i in (1..n).filter(|i| !is_carried(m, *i)) {
-            let limit = limits(i);
+            let limit = limit(m, i);
             parts.sleepy |= limit.is_some();
             parts.handles[i] = Some(parts.insert(sim, k, i, limit));
         }
@@ -117,7 +117,7 @@ impl Parts {
     pub fn read(&self, m: &Model, sim: &Sim, state: &State, k: &mut Kinematics) {
         for i in 1..m.bodies.len() {
             let Some(body) = self.handles[i].and_then(|h| sim.bodies.get(h)) else {
-                carry(m, state, k, i);
+                kinematics_of(m, k, (&state.q, &state.v), &[i]);
                 continue;
             };
             let r = axes(&body.position().rotation);
@@ -170,6 +170,5 @@ fn size_of(b: &Body) -> Option<(V3<f64>, S3<f64>)> {
 
 /// Least principal moment, kg·m².
 fn least(s: &S3<f64>) -> f64 {
-    let m = nalgebra::Matrix3::new(s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz);
-    m.symmetric_eigenvalues().min()
+    Mat3::from(*s).symmetric_eigenvalues().min()
 }

@@ -53,7 +53,7 @@ impl AxisSet {
         let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) else { return };
         if !contacts.is_empty() {
             let pass = Pass { q, v0, h, mean: self.mean, sweeps: self.sweeps };
-            self.work.contacts -= contacts.book(m, &pass, qdd, whole);
+            self.books.work.contacts -= contacts.book(m, &pass, qdd, whole);
         }
     }
 }

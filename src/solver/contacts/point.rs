@@ -4,7 +4,7 @@ use super::{CLOSED, Pass, approach, turning};
 use crate::contact::{Placed, Touch};
 use crate::dynamics::{Columns, Kinematics, Layout, Push, Response, Workspace};
 use crate::math::V3;
-use crate::model::{LinkFrame, Model, Surface};
+use crate::model::{Model, Surface};
 use crate::solver::rows::{Kind, Rows};
 
 /// What one touch is asked and gives.
@@ -218,7 +218,7 @@ impl BodyColumns {
         let mut place = vec![usize::MAX; m.bodies.len()];
         let mut columns = vec![];
         for link in m.colliders.iter().filter_map(|c| c.link) {
-            let (LinkFrame::OnBody { body, .. } | LinkFrame::InGroup { body, .. }) = m.links[link].frame;
+            let body = m.links[link].frame.body();
             if body != 0 && place[body] == usize::MAX {
                 place[body] = columns.len();
                 columns.push(Columns::new(&layout));
