@@ -1,4 +1,5 @@
 //! Steps in contact make no energy: what drives, weight and laws have not paid for is taken out, counted and added up.
+//! The same in scenes with contacts for trees of which an axis is at its hard stop, which is a blow or a support as well.
 //!
 //! Impacts, and rows that are not solved to the last bit, act through velocities of the middle of a step on limbs that turn on;
 //! the energy of a step is right to its order, but errors of one sign add up where a robot lies and jerks. So an island of trees
@@ -46,8 +47,9 @@ impl Rbx {
     /// Ends a piece of a step that began with the state `start` (of `Contacts::start`).
     /// Returns what even standing still does not pay for: bodies that were lifted out of each other, J.
     pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) -> f64 {
-        let touches = self.axes.touches();
-        let Some(mut paid) = self.paid.take_if(|_| touches) else { return 0.0 };
+        let acts = self.axes.contacts().is_some_and(|c| c.acting_bodies().next().is_some());
+        let acts = acts || self.axes.stopped().contains(&true);
+        let Some(mut paid) = self.paid.take_if(|_| acts) else { return 0.0 };
         self.join_touched(&mut paid);
         if let Some(contacts) = self.axes.contacts_mut() {
             contacts.arrive(m, &self.state.q, &self.state.v);
@@ -91,7 +93,12 @@ impl Rbx {
     fn join_touched(&self, paid: &mut Paid) {
         paid.accounts.fill(Account { share: 1.0, ..Account::default() });
         paid.islands.part();
-        for bodies in self.axes.contacts().into_iter().flat_map(|c| c.carrying_bodies()) {
+        for (stopped, tree) in self.axes.stopped().iter().zip(&paid.forest.of_axis) {
+            if *stopped && let Some(account) = paid.accounts.get_mut(*tree) {
+                account.touched = true;
+            }
+        }
+        for bodies in self.axes.contacts().into_iter().flat_map(|c| c.acting_bodies()) {
             let [a, b] = bodies.map(|body| paid.forest.of_body[body]);
             paid.islands.join(a, b);
             for tree in [a, b] {

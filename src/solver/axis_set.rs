@@ -64,6 +64,8 @@ pub struct AxisSet {
     stiff: Vec<bool>,
     /// Kinds of the riser an axis stood on at the end of the last step; 0 = it slid.
     pub(super) memory: Vec<u8>,
+    /// Per axis: it stood on a hard stop in the last step.
+    pub(super) stopped: Vec<bool>,
     moves: Vec<isize>,
     /// Per axis of a 3DOF group: which of its group's locks is its own, while it is locked.
     pub(super) lock: Vec<usize>,
@@ -113,6 +115,7 @@ impl AxisSet {
             at_end: vec![true; n],
             stiff: vec![false; n],
             memory: vec![0; n],
+            stopped: vec![false; n],
             moves: vec![0; n],
             lock: vec![0; n],
             rates: vec![EulerRates::default(); model.eulers.len()],
@@ -314,50 +317,6 @@ impl AxisSet {
         }
     }
 
-    /// Ends an implicit step of `h` seconds with these accelerations: remembers the places, writes efforts and work. `q` (nq) is
-    /// the state of the last pass.
-    pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
-        self.paid.fill((0.0, 0.0));
-        self.settle_contests();
-        self.damped = (0.0, 0.0);
-        for (i, axis) in m.axes.iter().enumerate() {
-            if self.rests(i) {
-                continue;
-            }
-            let (law, place) = (&self.laws[i], self.place[i]);
-            let acceleration = self.axis_rate(m, axis, qdd);
-            let end = self.speed[i] + h * acceleration;
-            let moved = if self.at_end[i] { end } else { 0.5 * (self.speed[i] + end) };
-            let k = place / 2;
-            let (effort, total) = if place % 2 == 1 {
-                let (total, speed) = (self.riser_torque(m, ws, i, qdd), law.knots[k].speed);
-                self.memory[i] = law.knots[k].kinds;
-                (law.drive_torque(speed, Some((k, total))), total)
-            } else {
-                let torques = (law.drive_torque(moved, None), law.on_segment(k, moved));
-                self.memory[i] = 0;
-                if law.is_servo() {
-                    self.brakes[i].mobility = self.whole_mobility(m, ws, q, i);
-                }
-                torques
-            };
-            self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
-            self.books.effort[i] = effort;
-            self.paid[i] = (0.5 * h * total * self.speed[i], 0.5 * h * total * end);
-            self.books.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
-        }
-    }
-
-    /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.
-    pub fn paid(&self) -> (f64, f64) {
-        self.paid.iter().fold(self.damped, |sum, p| (sum.0 + p.0, sum.1 + p.1))
-    }
-
-    /// The same per axis, then per direction in which a joint yields.
-    pub fn paid_by(&self) -> &[(f64, f64)] {
-        &self.paid
-    }
-
     /// Per axis: inertia of the rotor that counts, kg·m² or kg.
     pub fn rotors(&self) -> impl Iterator<Item = f64> {
         self.rotor.iter().copied()
@@ -391,7 +350,7 @@ impl AxisSet {
 
     /// Did a contact carry something in the last pass?
     pub fn touches(&self) -> bool {
-        self.contacts().is_some_and(|c| c.carrying_bodies().next().is_some())
+        self.contacts().is_some_and(Contacts::carries)
     }
 
     /// What the contacts' rows were left with in the last pass, m/s.

@@ -168,9 +168,14 @@ impl Contacts {
         &self.start.k
     }
 
-    /// The bodies of contacts that carried something in the last step and act on something.
-    pub fn carrying_bodies(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
-        self.points.iter().filter(|p| p.is_live() && p.impulse.normal > 0.0).map(|p| p.touch.bodies)
+    /// Did a contact carry something in the last pass?
+    pub fn carries(&self) -> bool {
+        self.points.iter().any(Point::carries)
+    }
+
+    /// The bodies of contacts that carried something in the last step, or pushed bodies out of each other.
+    pub fn acting_bodies(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        self.points.iter().filter(|p| p.carries() || (p.is_live() && p.lifts)).map(|p| p.touch.bodies)
     }
 
     /// Which bodies rest: to what moves they are as heavy as the world, and what lies between them stays as it is.
@@ -247,6 +252,7 @@ impl Contacts {
                 bounce: None,
                 free: 0.0,
                 block: 0,
+                lifts: false,
                 rolling: None,
                 spinning: None,
                 impulse: impulse.unwrap_or_default(),
@@ -277,7 +283,8 @@ impl Contacts {
         speeds(&mut self.v1);
         kinematics_of(m, &mut self.end, (pass.q, &self.v1), &self.chain);
         let mut wanted = false;
-        for point in self.points.iter().filter(|p| p.is_live()) {
+        for point in self.points.iter_mut().filter(|p| p.is_live()) {
+            point.lifts = false;
             let way = pass.h * point.along(0, approach(&self.end, &point.touch, point.placed.point));
             let (target, kind) = match point.bounce {
                 Some((_, gap)) => (gap, LiftKind::Exactly),
@@ -300,9 +307,11 @@ impl Contacts {
     }
 
     /// Pushes with the impulses of the lift.
-    pub(super) fn push_lift(&self, response: &mut Response, rows: &mut Rows) {
-        for point in self.points.iter().filter(|p| p.is_live()) {
-            let force = point.axes[0] * rows.lift(point.block).impulse;
+    pub(super) fn push_lift(&mut self, response: &mut Response, rows: &mut Rows) {
+        for point in self.points.iter_mut().filter(|p| p.is_live()) {
+            let impulse = rows.lift(point.block).impulse;
+            point.lifts = impulse != 0.0;
+            let force = point.axes[0] * impulse;
             for push in point.pushes(&self.middle, (force, V3::default())) {
                 response.push(&push, 1.0);
             }

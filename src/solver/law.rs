@@ -244,6 +244,12 @@ impl Law {
         knot.drop > 0.0 || knot.kinds & (WALL_LEFT | WALL_RIGHT) != 0 || sticks
     }
 
+    /// Is it a hard stop?
+    pub(super) fn is_hard_stop(&self, k: usize) -> bool {
+        let kinds = self.knots[k].kinds;
+        kinds & (LOWER | UPPER) != 0 && kinds & (WALL_LEFT | WALL_RIGHT) != 0
+    }
+
     /// Places between the walls: 2 j on segment j, 2 k + 1 on riser k.
     fn within_walls(&self, place: usize) -> usize {
         let knots = &self.knots[..self.count];

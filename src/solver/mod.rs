@@ -21,6 +21,7 @@ mod law;
 mod lifting;
 mod lifts;
 mod mobility;
+mod outcome;
 mod piece;
 mod refit;
 mod rows;

@@ -58,12 +58,12 @@ def drop(tmp_path, seed, step, seconds, *more):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_g1_falls_with_all_its_hulls(tmp_path, seed):
-    """At 1 ms: never deeper than 3 mm, and lies no deeper than 0.1 mm; steps in contact make no energy (the rest is free motion)."""
+    """At 1 ms: never deeper than 3 mm, and lies no deeper than 0.1 mm; makes no more energy in all than 0.1 mJ (in free motion)."""
     found = drop(tmp_path, seed, 0.001, 1.5, *MESHES)
     assert found["worst"] < 3e-3
     if found["kinetic"] < 1e-2:
         assert found["at rest"] < 1e-4
-    assert found["grown"] < 1e-2
+    assert found["grown"] < 1e-4
 
 
 @pytest.mark.parametrize("step", [0.01, 0.005, 0.00025])

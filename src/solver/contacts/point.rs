@@ -37,6 +37,8 @@ pub(super) struct Point {
     pub(super) impulse: Impulse,
     /// The same with bounces.
     pub(super) bounced: Impulse,
+    /// It has pushed its bodies apart in the position pass.
+    pub(super) lifts: bool,
 }
 
 /// Impulses of a contact on side 1, along the world's axes.
@@ -53,6 +55,11 @@ pub(super) struct Impulse {
 }
 
 impl Point {
+    /// Does it push, and act on something?
+    pub(super) fn carries(&self) -> bool {
+        self.is_live() && self.impulse.normal > 0.0
+    }
+
     /// Where it is in the middle of the step, and the least normal velocity at its end.
     ///
     /// What persists has u₁ = 0 with J₁ and had u₀ = 0 with J₀; with the rows of the middle that is `Jₘ v₁ = (J₀ − Jₘ) v₀`, of
