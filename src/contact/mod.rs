@@ -3,6 +3,7 @@
 //! invariant: this room alone names parry.
 
 mod broad;
+mod climb;
 mod collect;
 mod detector;
 mod exclude;

@@ -1,5 +1,6 @@
 //! The convex hull of corners, with its faces.
 
+use super::climb::Climb;
 use super::vector::{across, norm, unit};
 use crate::math::V3;
 use parry3d_f64::math::Vector;
@@ -15,6 +16,8 @@ pub(super) struct Polytope {
     starts: Vec<u32>,
     /// Indices into `points`, anticlockwise seen from outside.
     corners: Vec<u32>,
+    /// Of many corners: the way to the furthest.
+    pub climb: Option<Climb>,
 }
 
 /// Corners nearer to a plane than this share of the size lie in it.
@@ -28,25 +31,26 @@ impl Polytope {
         }
         let list: Vec<Vector> = points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
         let hull = ConvexPolyhedron::from_convex_hull(&list)?;
-        let mut made = Self { points: vec![], normals: vec![], starts: vec![0], corners: vec![] };
+        let mut made = Self { points: vec![], normals: vec![], starts: vec![0], corners: vec![], climb: None };
         made.points.extend(hull.points().iter().map(|p| V3::new(p.x, p.y, p.z)));
         for face in hull.faces() {
             let first = face.first_vertex_or_edge as usize;
             let around = &hull.vertices_adj_to_face()[first..first + face.num_vertices_or_edges as usize];
             made.add_face(around);
         }
+        made.climb = Climb::of(&made.points, (0..made.normals.len()).map(|i| made.face(i)));
         Some(made)
     }
 
     /// Without faces: only where a hull could not be made.
     pub(super) fn bare(points: &[V3<f64>]) -> Self {
-        Self { points: points.to_vec(), normals: vec![], starts: vec![0], corners: vec![] }
+        Self { points: points.to_vec(), normals: vec![], starts: vec![0], corners: vec![], climb: None }
     }
 
     fn flat(points: &[V3<f64>], normal: V3<f64>) -> Self {
         let around = planar_hull(points, normal);
         let kept = around.iter().map(|i| points[*i]).collect();
-        let mut made = Self { points: kept, normals: vec![], starts: vec![0], corners: vec![] };
+        let mut made = Self { points: kept, normals: vec![], starts: vec![0], corners: vec![], climb: None };
         if around.len() > 2 {
             let up: Vec<u32> = (0..around.len() as u32).collect();
             made.add_face(&up);
@@ -71,7 +75,11 @@ impl Polytope {
         &self.corners[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
+    /// The corner furthest in a direction of any length.
     pub(super) fn support(&self, d: V3<f64>) -> V3<f64> {
+        if let Some(climb) = &self.climb {
+            return climb.support(&self.points, d);
+        }
         let further = |best: (f64, V3<f64>), p: &V3<f64>| {
             let reach = p.dot(d);
             if reach > best.0 { (reach, *p) } else { best }
