@@ -61,7 +61,7 @@ impl Rbx {
             move_coordinates(m, &self.unlifted, &self.lift, s.h, &mut self.state.q);
         }
         self.axes.round_speeds(m, &mut self.state.v);
-        self.state.read_angles(m);
+        self.put_back(m);
         let piece = std::mem::take(&mut self.piece);
         self.pay(m, &piece, s.gravity, report);
         self.piece = piece;

@@ -271,7 +271,7 @@ impl Rbx {
     /// Moves from the start of the piece with its speeds.
     fn move_from(&mut self, m: &Model, mid: &Midpoint, h: f64) {
         move_coordinates(m, &mid.start.q, &mid.u, h, &mut self.state.q);
-        self.state.read_angles(m);
+        self.put_back(m);
     }
 
     /// Takes the step with the accelerations of the last pass.
@@ -290,8 +290,7 @@ impl Rbx {
             mid.u.iter_mut().zip(&self.lift).for_each(|(u, lift)| *u += lift);
         }
         self.axes.round_speeds(m, &mut self.state.v);
-        move_coordinates(m, &mid.start.q, &mid.u, h, &mut self.state.q);
-        self.state.read_angles(m);
+        self.move_from(m, mid, h);
         if self.axes.is_calm() {
             mid.guess.copy_from_slice(&self.qdd);
         } else {

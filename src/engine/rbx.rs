@@ -327,9 +327,6 @@ impl Rbx {
                 None => self.euler(m, commands, s, &mut report),
             }
         }
-        if self.axes.push_back(m, &mut self.state.q, &self.state.angles) {
-            self.state.read_angles(m);
-        }
         if !self.state.finite() {
             self.state.copy_from(&self.before);
             report.diverged = true;
@@ -369,8 +366,18 @@ impl Rbx {
         self.stages = Some(st);
         if !smooth {
             self.state.copy_from(&self.before);
+        } else {
+            self.put_back(m);
         }
         smooth
+    }
+
+    /// Ends a move of the coordinates: angles, and axes that were beyond their stops go back.
+    pub(super) fn put_back(&mut self, m: &Model) {
+        self.state.read_angles(m);
+        if self.axes.push_back(m, &mut self.state.q, &self.state.angles) {
+            self.state.read_angles(m);
+        }
     }
 }
 

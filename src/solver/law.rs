@@ -250,6 +250,15 @@ impl Law {
         kinds & (LOWER | UPPER) != 0 && kinds & (WALL_LEFT | WALL_RIGHT) != 0
     }
 
+    /// The part of the torque on a riser that its walls take.
+    pub(super) fn at_walls(&self, k: usize, torque: f64) -> f64 {
+        let knot = &self.knots[k];
+        let (left, right) = (self.segments[k].at(knot.speed), self.segments[k + 1].at(knot.speed));
+        let above = if knot.kinds & WALL_LEFT != 0 { (torque - left).max(0.0) } else { 0.0 };
+        let below = if knot.kinds & WALL_RIGHT != 0 { (torque - right).min(0.0) } else { 0.0 };
+        above + below
+    }
+
     /// Places between the walls: 2 j on segment j, 2 k + 1 on riser k.
     fn within_walls(&self, place: usize) -> usize {
         let knots = &self.knots[..self.count];

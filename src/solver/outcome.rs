@@ -47,8 +47,15 @@ impl AxisSet {
         };
         self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
         self.books.effort[i] = effort;
-        self.paid[i] = (0.5 * h * total * self.speed[i], 0.5 * h * total * end);
+        let pays = total - if self.stopped[i] { self.unpaid(i, end, total) } else { 0.0 };
+        self.paid[i] = (0.5 * h * pays * self.speed[i], 0.5 * h * pays * end);
         self.books.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
+    }
+
+    /// The torque of a hard stop that would do work. None does: the axis came back from it, and again to it, in one step.
+    fn unpaid(&self, i: usize, end: f64, total: f64) -> f64 {
+        let wall = self.laws[i].at_walls(self.place[i] / 2, total);
+        if wall * (self.speed[i] + end) > 0.0 { wall } else { 0.0 }
     }
 
     /// Per axis: did it stand on a hard stop in the step that was finished last?
