@@ -187,44 +187,6 @@ fn what_starts_inside_comes_out_gently() {
     assert!(worst < 0.01 && worst > 0.01 - 0.003 - 1e-4, "{worst}");
 }
 
-/// Shape, and how high its origin rests; with what a polyhedron of 48 corners, or 22 by 11 of an ellipsoid, is too low.
-#[test]
-fn shapes_rest_where_they_end() {
-    let lying = "0.7071067811865476, 0, 0, 0.7071067811865476";
-    let rows = [
-        ("sphere: {radius: 0.1}", "0, 0, 0, 1", 0.1, 0.0),
-        ("box: {size: [0.4, 0.3, 0.2]}", "0, 0, 0, 1", 0.1, 0.0),
-        ("capsule: {radius: 0.1, length: 0.3}", lying, 0.1, 0.0),
-        ("cylinder: {radius: 0.1, length: 0.3}", "0, 0, 0, 1", 0.15, 0.0),
-        ("cylinder: {radius: 0.1, length: 0.3}", lying, 0.1, 0.1 * 2.2e-3),
-        ("sphere: {radius: 0.1}, scale: [1.5, 1.2, 0.8]", "0, 0, 0, 1", 0.08, 0.08 * 2e-2),
-    ];
-    for (shape, turned, rest, low) in rows {
-        let text = format!(
-            "ground: true\nbodies:\n  - {{name: a, mass: 2, shape: {{{shape}}}, pose: [0, 0, {}, {turned}], \
-             damping: {{angular: 0.9}}}}\n",
-            rest + 0.05
-        );
-        let mut w = scene(&text);
-        run(&mut w, 3.0);
-        let off = height(&w, "a") - rest;
-        println!("{shape}: {off:e} m");
-        assert!(off < 1e-4 && off > -1e-4 - low, "{shape} {off}");
-    }
-}
-
-/// Margins keep a box off the ground, and off each other.
-#[test]
-fn margins_keep_apart() {
-    let text = format!(
-        "ground: {{margin: 0.01}}\nbodies:\n  - {{name: a, {BOX}, surface: {{margin: 0.02}}, pose: [0, 0, 0.2, 0, 0, 0, 1]}}\n"
-    );
-    let mut w = scene(&text);
-    run(&mut w, 1.0);
-    assert!((height(&w, "a") - 0.13).abs() < 1e-4, "{}", height(&w, "a"));
-    assert!(w.stats().worst_penetration < 1e-3, "{}", w.stats().worst_penetration);
-}
-
 /// A ball rolls to rest by rolling friction: it loses 5/7 · g · c / r per second.
 #[test]
 fn a_ball_rolls_to_rest() {

@@ -4,9 +4,9 @@
 use super::spec::Form;
 use super::sys::{NoHull, cook_hull, cook_mesh};
 use crate::engine::outline::{AROUND, ellipsoid, rim};
-use crate::math::{Pose, Quat, V3, Vec3};
+use crate::math::{Mat3, Pose, Quat, V3, Vec3};
 use crate::shape::{ContactForm, TriMesh};
-use nalgebra::{Translation3, Unit};
+use nalgebra::{SymmetricEigen, Translation3, Unit};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -16,6 +16,10 @@ const BANDS: (u32, u32) = (22, 11);
 const FEW: (u32, u32) = (14, 10);
 /// A box that is thinner than this is none, m.
 const THIN: f64 = 1e-6;
+/// Corners are in a plane if they are off it by less than this share of their size.
+const LEVEL: f64 = 1e-4;
+/// Half the thickness of a plate, as a share of its size.
+const PLATE: f64 = 2e-3;
 
 /// What becomes of a shape.
 #[derive(Clone, Debug)]
@@ -26,7 +30,7 @@ pub struct Made {
     pub instead: Option<&'static str>,
 }
 
-/// A shape that stands still if `fixed`. `None` if PhysX cannot make it: corners that lie in a plane or so.
+/// What becomes of a shape. `None` if PhysX cannot make it: corners that lie on a line or so.
 pub fn make(form: &ContactForm) -> Option<Made> {
     let exact = |parts| Some(Made { parts, instead: None });
     let at = |z: f64| Pose::translation(0.0, 0.0, z);
@@ -49,24 +53,17 @@ pub fn make(form: &ContactForm) -> Option<Made> {
             }
             Some(Made { parts, instead: Some(ROUND) })
         }
-        ContactForm::Ellipsoid { radii } => polyhedron(&ellipsoid(*radii, 0.0, BANDS)),
+        ContactForm::Ellipsoid { radii } => polyhedron(&ellipsoid(*radii, 0.0, BANDS), Some(ROUND)),
         ContactForm::Cylinder { radius, half } => {
-            polyhedron(&[rim([*radius; 2], -half, AROUND), rim([*radius; 2], *half, AROUND)].concat())
+            polyhedron(&[rim([*radius; 2], -half, AROUND), rim([*radius; 2], *half, AROUND)].concat(), Some(ROUND))
         }
         ContactForm::Cone { radius, half } => {
-            polyhedron(&[rim([*radius; 2], -half, AROUND), rim([0.0; 2], *half, AROUND)].concat())
+            polyhedron(&[rim([*radius; 2], -half, AROUND), rim([0.0; 2], *half, AROUND)].concat(), Some(ROUND))
         }
         ContactForm::Frustum { radii, top, half } => {
-            polyhedron(&[rim(*radii, -half, AROUND), rim(radii.map(|r| r * top), *half, AROUND)].concat())
+            polyhedron(&[rim(*radii, -half, AROUND), rim(radii.map(|r| r * top), *half, AROUND)].concat(), Some(ROUND))
         }
-        ContactForm::Hull(corners) => {
-            let corners: Vec<V3<f64>> = corners.iter().map(|p| V3::from(*p)).collect();
-            match cook_hull(&single(&corners)) {
-                Ok(cooked) => exact(vec![(Form::Hull(Arc::new(cooked)), Pose::identity())]),
-                Err(NoHull::Flat) => None,
-                Err(NoHull::TooMany) => Some(Made { parts: vec![hull(&fewer(&corners))?], instead: Some(COARSE) }),
-            }
-        }
+        ContactForm::Hull(corners) => polyhedron(&corners.iter().map(|p| V3::from(*p)).collect::<Vec<_>>(), None),
         // Surfaces are made by themselves: that is long, and nobody needs it to tell what becomes of them.
         ContactForm::Surface(_) => exact(vec![]),
     }
@@ -83,9 +80,35 @@ pub fn surface(mesh: &TriMesh) -> Result<Form, String> {
 
 const ROUND: &str = "it collides as a polyhedron";
 const COARSE: &str = "it collides as the hull of 128 of its corners";
+const FLAT: &str = "it collides as a plate whose thickness is 0.4 % of its size";
 
-fn polyhedron(corners: &[V3<f64>]) -> Option<Made> {
-    Some(Made { parts: vec![hull(corners)?], instead: Some(ROUND) })
+fn polyhedron(corners: &[V3<f64>], instead: Option<&'static str>) -> Option<Made> {
+    let plate = plate_of(corners);
+    let instead = if plate.is_some() { Some(FLAT) } else { instead };
+    if plate.as_deref().is_some_and(|plate| plate_of(plate).is_some()) {
+        // They lie on a line.
+        return None;
+    }
+    let corners = plate.as_deref().unwrap_or(corners);
+    match cook_hull(&single(corners)) {
+        Ok(cooked) => Some(Made { parts: vec![(Form::Hull(Arc::new(cooked)), Pose::identity())], instead }),
+        Err(NoHull::Flat) => None,
+        Err(NoHull::TooMany) => Some(Made { parts: vec![hull(&fewer(corners))?], instead: instead.or(Some(COARSE)) }),
+    }
+}
+
+/// Corners that lie in a plane, each of them twice: PhysX makes a box of them, in silence. `None` if they do not.
+fn plate_of(corners: &[V3<f64>]) -> Option<Vec<V3<f64>>> {
+    let all: Vec<Vec3> = corners.iter().map(|p| Vec3::from(*p)).collect();
+    let center = all.iter().sum::<Vec3>() / all.len().max(1) as f64;
+    let spread: Mat3 = all.iter().map(|p| (p - center) * (p - center).transpose()).sum();
+    let eigen = SymmetricEigen::new(spread);
+    let normal: Vec3 = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
+    let size = all.iter().map(|p| (p - center).norm()).fold(0.0, f64::max);
+    let thick = all.iter().map(|p| (p - center).dot(&normal).abs()).fold(0.0, f64::max);
+    let up = normal * (PLATE * size);
+    let both = || all.iter().flat_map(|p| [V3::from(p - up), V3::from(p + up)]);
+    (thick < (LEVEL * size).max(THIN)).then(|| both().collect())
 }
 
 fn hull(corners: &[V3<f64>]) -> Option<(Form, Pose)> {
