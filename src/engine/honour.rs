@@ -31,12 +31,12 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
         found.push(Shortfall { element, item: item.into(), instead: instead.into() });
     };
     let joint = |name: &str| format!("joint '{name}'");
-    if !can.couplings {
+    if can.joints && !can.couplings {
         for c in m.couplings_in_force() {
             tell(joint(&m.axes[c.follower].name), "<mimic>", "it moves by itself");
         }
     }
-    if !can.softness {
+    if can.joints && !can.softness {
         for soft in m.softs.iter().filter(|s| s.softness.cfm > 0.0) {
             let body = m.body_of(soft.v).unwrap_or(0);
             let behind = (body..m.bodies.len()).find(|b| carries_link(m, *b)).unwrap_or(body);
@@ -45,12 +45,12 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
             tell(element, "<constraint cfm>", "the joint is hard");
         }
     }
-    if !can.rotor_inertia {
+    if can.joints && !can.rotor_inertia {
         for a in m.axes.iter().filter(|a| a.drive.rotor_inertia > 0.0) {
             tell(joint(&a.name), "<drive rotor_inertia>", "the rotor has no inertia");
         }
     }
-    if !can.breaking {
+    if can.joints && !can.breaking {
         for b in &m.breakables {
             tell(joint(&b.joint), "<constraint break_threshold>", "it does not come apart");
         }
@@ -61,8 +61,11 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
             tell(format!("link '{}'", c.name), "<surface rolling_friction spinning_friction>", "it rolls without loss");
         }
     }
-    if kind == EngineKind::Rapier {
-        found.extend(super::rapier::shortfalls(m));
+    match kind {
+        EngineKind::Rapier => found.extend(super::rapier::shortfalls(m)),
+        #[cfg(feature = "physx")]
+        EngineKind::Physx => found.extend(super::physx::shortfalls(m)),
+        _ => {}
     }
     found.dedup();
     found

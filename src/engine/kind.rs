@@ -13,7 +13,7 @@ pub enum EngineKind {
     Rapier,
     /// The source's own: a body for each link, sequential impulses. In programs that were built with the feature `bullet`.
     Bullet,
-    /// For free bodies only, in the source. A known name, but in no program yet.
+    /// PhysX 5.1, for free bodies only, in single precision. In programs that were built with the feature `physx`.
     Physx,
 }
 
@@ -76,6 +76,7 @@ impl EngineKind {
                 couplings: false,
                 ..all
             },
+            // A copy starts without PhysX's memory of the last contacts, and awake. Single precision: about 7 digits.
             Self::Physx => Capabilities {
                 exact_copy: false,
                 joints: false,
@@ -85,7 +86,7 @@ impl EngineKind {
                 softness: false,
                 rotor_inertia: false,
                 breaking: false,
-                rolling_friction: false,
+                ..all
             },
         }
     }
@@ -121,6 +122,9 @@ impl EngineKind {
             Self::Bullet => Box::new(super::bullet::Bullet::new(m, state)?),
             #[cfg(not(feature = "bullet"))]
             Self::Bullet => return Err(NO_BULLET.into()),
+            #[cfg(feature = "physx")]
+            Self::Physx => Box::new(super::physx::Physx::new(m, state)?),
+            #[cfg(not(feature = "physx"))]
             Self::Physx => return Err(NO_PHYSX.into()),
         })
     }
@@ -134,6 +138,7 @@ impl EngineKind {
             Self::Rbx | Self::Rapier => Ok(()),
             Self::Bullet if cfg!(feature = "bullet") => Ok(()),
             Self::Bullet => Err(NO_BULLET.into()),
+            Self::Physx if cfg!(feature = "physx") => Ok(()),
             Self::Physx => Err(NO_PHYSX.into()),
         }
     }
@@ -147,5 +152,6 @@ impl EngineKind {
 /// How to get it.
 const NO_BULLET: &str = "this program was built without the engine bullet; to have it: apt install libbullet-dev, then \
                          cargo build --release --features bullet";
-/// It is not made.
-const NO_PHYSX: &str = "the engine physx is not part of realnoid yet; choose rbx, rapier or bullet";
+/// How to get it.
+const NO_PHYSX: &str = "this program was built without the engine physx; to have it: cargo build --release --features physx \
+                        (with CXX=g++ outside of realnoid's folder; some 6 minutes of CPU the first time)";

@@ -34,11 +34,17 @@ impl Gap {
 /// [`crate::dynamics::kinematics_of`] puts it.
 pub fn read_state(m: &Model, k: &Kinematics, state: &mut State) -> Gap {
     let mut widest = Gap::default();
-    for (i, b) in m.bodies.iter().enumerate().skip(1) {
-        widest = widest.max(read_joint(b, &Relative::of(b, k, i), &mut state.q[b.q..], &mut state.v[b.v..]));
+    for i in 1..m.bodies.len() {
+        widest = widest.max(read_body(m, k, i, state));
     }
     state.read_angles(m);
     widest
+}
+
+/// The same of one body, without angles of a 3DOF group.
+pub fn read_body(m: &Model, k: &Kinematics, i: usize, state: &mut State) -> Gap {
+    let b = &m.bodies[i];
+    read_joint(b, &Relative::of(b, k, i), &mut state.q[b.q..], &mut state.v[b.v..])
 }
 
 /// A body against the frame of its joint on its parent.

@@ -13,7 +13,10 @@ mod honour;
 mod kind;
 pub mod maximal;
 mod midpoint;
+mod outline;
 mod paid;
+#[cfg(feature = "physx")]
+pub mod physx;
 mod rapier;
 mod rbx;
 mod rk4;

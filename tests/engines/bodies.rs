@@ -16,11 +16,13 @@ fn a_body_falls() {
         let mut w = scene(&format!("bodies:\n  - {{name: a, {BOX}, pose: [0, 0, 9, 0, 0, 0, 1]}}\n"), engine);
         run(&mut w, 1.0);
         let (pose, twist) = link(&w, "a");
+        // In single precision each step rounds 9 m and 9.8 m/s to 24 bits.
+        let rounded = if engine == EngineKind::Physx { G * 6e-8 / explicit_step(&w) } else { 1e-9 };
         // Semi-implicit Euler is g t δ/2 below the parabola.
-        let allowed = 0.5 * G * explicit_step(&w) + 1e-9;
+        let allowed = 0.5 * G * explicit_step(&w) + 1.5 * rounded;
         let error = pose.translation.z - (9.0 - 0.5 * G);
         assert!(error.abs() <= 1.001 * allowed, "{} {error} {allowed}", engine.name());
-        assert!((twist.linear.z + G).abs() < 1e-9, "{} {}", engine.name(), twist.linear.z);
+        assert!((twist.linear.z + G).abs() < rounded, "{} {}", engine.name(), twist.linear.z);
     }
 }
 
@@ -41,6 +43,8 @@ fn a_free_body_keeps_its_energy_and_momentum() {
         let (allowed, length) = match engine.name() {
             "rbx" => (1e-6, 1e-6),
             "rapier" => (1e-5, 1e-9),
+            // Some twenty roundings to 24 bits in each step.
+            "physx" => (2.4e-6 / explicit_step(&w) * 10.0, 1.2e-6 / explicit_step(&w) * 10.0),
             _ => (4e-2, 2e-2),
         };
         assert!(lost < allowed && shorter < length, "{}: energy {lost}, momentum {shorter}", engine.name());

@@ -1,15 +1,13 @@
 //! Shapes that collide, as rapier has them.
 
 use super::convert::{point, vector};
-use crate::math::{V3, sin_cos};
+use crate::engine::outline::{self, AROUND};
 use crate::shape::ContactForm;
 use rapier3d_f64::math::{Pose, Vector};
 use rapier3d_f64::prelude::{SharedShape, TriMeshFlags};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
-/// Corners around a round shape that rapier does not have; its flats are 1 − cos(π/48) = 0.2 % of the radius too low.
-const AROUND: u32 = 48;
-/// And from pole to pole.
+/// Bands from pole to pole of a round shape that rapier does not have.
 const ALONG: u32 = 24;
 
 /// The shape, and its frame in that of the form. `None` if rapier cannot make it: corners that lie in a plane or so.
@@ -60,19 +58,10 @@ pub(super) fn is_approximate(form: &ContactForm) -> bool {
     }
 }
 
-fn rim([a, b]: [f64; 2], z: f64) -> Vec<Vector> {
-    let corner = |k: u32| {
-        let (s, c) = sin_cos(TAU * f64::from(k) / f64::from(AROUND));
-        vector(V3::new(a * c, b * s, z))
-    };
-    if a == 0.0 && b == 0.0 { vec![corner(0)] } else { (0..AROUND).map(corner).collect() }
+fn rim(radii: [f64; 2], z: f64) -> Vec<Vector> {
+    outline::rim(radii, z, AROUND).into_iter().map(vector).collect()
 }
 
-fn ellipsoid([a, b, c]: [f64; 3], z: f64) -> Vec<Vector> {
-    let ring = |k: u32| {
-        let (s, up) = sin_cos(FRAC_PI_2 * (2.0 * f64::from(k) / f64::from(ALONG) - 1.0));
-        let at = if k == 0 || k == ALONG { [0.0; 2] } else { [a * up, b * up] };
-        rim(at, z + c * s)
-    };
-    (0..=ALONG).flat_map(ring).collect()
+fn ellipsoid(radii: [f64; 3], z: f64) -> Vec<Vector> {
+    outline::ellipsoid(radii, z, (AROUND, ALONG)).into_iter().map(vector).collect()
 }
