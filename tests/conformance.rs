@@ -31,7 +31,10 @@ fn every_engine_is_where_theory_says() {
             match outcome {
                 Outcome::Skipped(lacks) => {
                     println!("skipped: {place}, which has no {}", lacks.join(", "));
-                    assert!(*engine != EngineKind::Rbx && case.lacks(*engine) == *lacks && !lacks.is_empty(), "{place}");
+                    assert!(
+                        *engine != EngineKind::Rbx && case.lacks(*engine) == *lacks && !lacks.is_empty(),
+                        "{place}"
+                    );
                 }
                 Outcome::NotBuilt(why) | Outcome::Refused(why) => wrong.push(format!("{place}: {why}")),
                 Outcome::Done(run) => {

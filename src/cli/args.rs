@@ -106,6 +106,9 @@ pub struct InspectArgs {
     /// The flat ground z = 0, where the scene has none of its own.
     #[arg(long)]
     pub ground: bool,
+    /// What this engine does not honour of it, and what it calls the shapes that it makes of it; not with --full.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["full", "urdf_with_inertials"])]
+    pub engine: Option<String>,
     /// JSON instead of tables.
     #[arg(long)]
     pub json: bool,

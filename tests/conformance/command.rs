@@ -63,7 +63,10 @@ fn a_sound_case_passes_and_a_wrong_one_fails() {
     assert!(code == Some(0) && said.contains("It falls."), "{said}");
     // Theory that is wrong by a millimetre per second.
     let (code, said, _) = run(&GOOD.replace("is: -v", "is: 0.001 - v"), &["--engine", "rapier"]);
-    assert!(code == Some(1) && said.contains("rapier is BEYOND ITS TOLERANCE: velocity of ball z: 1.00e-3 of 1.00e-9"), "{said}");
+    assert!(
+        code == Some(1) && said.contains("rapier is BEYOND ITS TOLERANCE: velocity of ball z: 1.00e-3 of 1.00e-9"),
+        "{said}"
+    );
     assert!(!said.contains("rbx"), "{said}");
     // What the case says of an engine that is beyond …
     let known = |error: f64| {
@@ -74,7 +77,8 @@ fn a_sound_case_passes_and_a_wrong_one_fails() {
     assert!(code == Some(0) && said.contains("rbx is beyond, as the case says"), "{said}");
     // … holds up to twice of it, and no longer than it is so.
     assert_eq!(known(0.0004).0, Some(1));
-    let (code, said, _) = run(&format!("{GOOD}    beyond: {{rbx: {{error: 0.001, because: a mistake}}}}\n"), &["--engine", "rbx"]);
+    let (code, said, _) =
+        run(&format!("{GOOD}    beyond: {{rbx: {{error: 0.001, because: a mistake}}}}\n"), &["--engine", "rbx"]);
     assert!(code == Some(0) && said.contains("no longer beyond"), "{said}");
 }
 
@@ -90,7 +94,11 @@ fn figures_go_into_files() {
     assert!((figure["value"].as_f64().unwrap() + 0.980665).abs() < 1e-9, "{figure}");
     assert_eq!((all["passed"].as_bool(), figure["verdict"].as_str()), (Some(true), Some("within")));
     let rows = fs::read_to_string(csv).unwrap();
-    assert!(rows.lines().count() == 2 && rows.lines().nth(1).unwrap().starts_with("\"fall\",\"velocity of ball z\",m/s,rbx,0.1,"), "{rows}");
+    assert!(
+        rows.lines().count() == 2
+            && rows.lines().nth(1).unwrap().starts_with("\"fall\",\"velocity of ball z\",m/s,rbx,0.1,"),
+        "{rows}"
+    );
     let page = fs::read_to_string(page).unwrap();
     assert!(page.contains("### fall") && page.contains("not asked"), "{page}");
     assert_eq!(run(GOOD, &["--engine", "rbx", "--csv", "/nowhere/a.csv"]).0, Some(1));
@@ -156,7 +164,8 @@ fn the_format_is_documented() {
         listed.lines().filter(|l| l.starts_with("  ")).filter_map(|l| l.split_whitespace().next()).collect();
     assert!(quantities.len() > 15, "{help}");
     let keys = fs::read_to_string("src/cli/conformance/file.rs").unwrap();
-    let keys: Vec<&str> = keys.lines().filter_map(|l| l.trim().strip_prefix("pub ")?.split_once(':')).map(|(k, _)| k).collect();
+    let keys: Vec<&str> =
+        keys.lines().filter_map(|l| l.trim().strip_prefix("pub ")?.split_once(':')).map(|(k, _)| k).collect();
     assert!(keys.len() > 20, "{keys:?}");
     for word in quantities.iter().chain(&keys) {
         assert!(text.contains(&format!("`{word}`")), "docs/conformance.md does not tell of `{word}`");

@@ -35,6 +35,8 @@ pub struct Case {
     pub expectations: Vec<Expectation>,
     /// Those of the scene, whatever the engine.
     pub settings: Settings,
+    /// `name = formula`, as the file has them.
+    pub constants: Vec<String>,
     pub(super) model: Arc<Model>,
     pub(super) initial: State,
     pub(super) script: Script,
@@ -151,7 +153,19 @@ impl Case {
             expectations.push(expectation);
         }
         let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        Ok(Self { name, shows: file.shows, needs, expectations, settings, model, initial, script, intervals })
+        let constants = file.constants.into_iter().map(|c| c.value).collect();
+        Ok(Self {
+            name,
+            shows: file.shows,
+            needs,
+            expectations,
+            settings,
+            constants,
+            model,
+            initial,
+            script,
+            intervals,
+        })
     }
 
     /// What of [`Case::needs`] an engine cannot.

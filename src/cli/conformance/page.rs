@@ -13,8 +13,9 @@ const HEAD: &str = "# Engines against theory
 Made by `realnoid engines --cases CASES --markdown FILE`; do not edit. How cases are written: [conformance.md](conformance.md).
 
 What every engine makes of scenes whose outcome is known. A cell is *error of allowed*: how far the engine is from theory, and how far it may be; both
-in the unit of the quantity. Where there are several instants, it is the one with the greatest share. What is allowed was fixed from theory before anything was
-measured, and the reason stands below each table. An engine that misses it is in **bold**, with its cause: the tolerance stays where theory has it.
+in the unit of the quantity. Where there are several instants, it is the one with the greatest share. What is allowed was fixed
+before the cases were run: from theory, or, of soft contacts and rows that are iterated, from what was seen when the engines were chosen; the reason stands below each table. An engine that
+misses it is in **bold**, with its cause: the tolerance stays.
 The words of a case are its reference: `g` is gravity, `t` the time, `h` the step, `n` solver_iterations (substeps of rapier), `single` 2⁻²⁴.
 ";
 
@@ -82,9 +83,13 @@ fn of_case(r: &Results, i: usize) -> String {
     );
     let needs: Vec<String> = case.needs.iter().map(|n| format!("`{n}`")).collect();
     text += &if needs.is_empty() { ".\n\n".into() } else { format!("; needs {}.\n\n", needs.join(", ")) };
+    if !case.constants.is_empty() {
+        let _ = writeln!(text, "With `{}`.\n", case.constants.join("`, `"));
+    }
     text += &header("| quantity | theory |");
     for (n, e) in case.expectations.iter().enumerate() {
-        let _ = write!(text, "| {} | `{}` {} |", e.name, e.formula(), e.unit());
+        let unit = if e.unit() == "1" { String::new() } else { format!(" {}", e.unit()) };
+        let _ = write!(text, "| {} | `{}`{unit} |", e.name, e.formula());
         EngineKind::NAMES.iter().for_each(|(_, k)| text += &format!(" {} |", cell(r, (i, n), *k)));
         text += "\n";
     }
