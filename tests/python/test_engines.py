@@ -88,6 +88,31 @@ def re_build(reason):
     return "cargo build --release --features" in reason or "not part of realnoid yet" in reason
 
 
+# Two hinges without mass between them that do not stand square on each other: Bullet has no constraint for that.
+ASKEW = """<robot name="askew"><link name="base"/><link name="between"/>
+<link name="tip"><inertial><origin xyz="0.1 0 0"/><mass value="1"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+<joint name="first" type="continuous"><parent link="base"/><child link="between"/><axis xyz="0 0 1"/></joint>
+<joint name="second" type="continuous"><parent link="between"/><child link="tip"/><axis xyz="0 1 1"/></joint></robot>
+"""
+
+
+@pytest.mark.skipif("bullet" not in BUILT, reason="only bullet refuses a robot")
+def test_an_engine_that_cannot_take_the_robot_is_refused(start, tmp_path):
+    urdf = tmp_path / "askew.urdf"
+    urdf.write_text(ASKEW)
+    bench = start(urdf=urdf)
+    client = bench.probe.parameters()
+    [result] = bench.probe.set(client, engine="bullet")
+    assert not result.successful and "parameter 'engine' = bullet" in result.reason and "link 'tip'" in result.reason, result.reason
+    assert bench.probe.get(client, "engine") == "rbx"
+    # Later settings still count.
+    [result] = bench.probe.set(client, control_interval=0.002)
+    assert result.successful
+    stamps = lambda: [nanoseconds(s.header.stamp) for s in list(bench.states)[-2:]]
+    wait_until(lambda: stamps()[1] - stamps()[0] == 2_000_000, what="stamps 2 ms apart")
+
+
 @pytest.fixture
 def coupled(tmp_path):
     """The ankle follows the knee: rbx alone knows that."""
