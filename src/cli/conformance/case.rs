@@ -3,13 +3,13 @@
 use super::file::{Beyond, CaseFile, Expected};
 use super::formula::{Formula, Names};
 use super::list::abilities;
-use super::quantity::{About, PARTS, Part, Probe, QUANTITIES, Quantity, index};
+use super::quantity::{About, Owner, PARTS, Part, Probe, QUANTITIES, Quantity, index};
 use crate::cli::load::Source;
 use crate::cli::scene::{Fault, Scene, Spare, assemble, plain};
 use crate::cli::script::Script;
 use crate::engine::State;
 use crate::math::Vec3;
-use crate::model::{Base, Model};
+use crate::model::{AxisKind, Base, Model};
 use crate::world::{EngineKind, Settings, World};
 use serde_json::Value;
 use serde_saphyr::Spanned;
@@ -76,7 +76,7 @@ pub struct Expectation {
 impl Expectation {
     /// The unit of value and error.
     pub fn unit(&self) -> &'static str {
-        if self.probe.part == Part::Direction { "1" } else { self.probe.about.unit }
+        self.probe.unit()
     }
 
     /// How many numbers the value is: 1 or 3.
@@ -270,7 +270,8 @@ impl Reader<'_> {
         if e.point.is_some() && !matches!(about.quantity, Quantity::Position | Quantity::Velocity) {
             return Err("point: only position and velocity have one".into());
         }
-        let probe = Probe { about, index, part, point: e.point.map_or(Vec3::zeros(), Vec3::from) };
+        let linear = about.owner == Owner::Axis && self.model.axes[index].kind == AxisKind::Linear;
+        let probe = Probe { about, index, linear, part, point: e.point.map_or(Vec3::zeros(), Vec3::from) };
         let when = self.when(&e, part)?;
         let name = e.name.clone().unwrap_or_else(|| automatic(&e, &when));
         if [&name, &e.theory, &e.because].iter().any(|text| text.contains(['|', '\n'])) {

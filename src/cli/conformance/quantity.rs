@@ -190,6 +190,8 @@ pub(super) struct Probe {
     pub about: &'static About,
     /// Link or axis.
     pub index: usize,
+    /// The axis is a linear one.
+    pub linear: bool,
     pub part: Part,
     /// In the link's frame, m.
     pub point: Vec3,
@@ -212,6 +214,21 @@ impl Beginning {
 }
 
 impl Probe {
+    /// The unit of value and error.
+    pub fn unit(&self) -> &'static str {
+        match (self.about.owner, self.about.unit.split_once(" or ")) {
+            _ if self.part == Part::Direction => "1",
+            (Owner::Axis, Some((rotary, linear))) => {
+                if self.linear {
+                    linear
+                } else {
+                    rotary
+                }
+            }
+            _ => self.about.unit,
+        }
+    }
+
     /// The present value; a single number is the first of the three. Crossings are not read here.
     pub fn read(&self, w: &World, s: &Snapshot, start: &Beginning) -> Vec3 {
         let one = |x: f64| Vec3::new(x, 0.0, 0.0);
