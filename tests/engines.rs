@@ -1,11 +1,9 @@
-//! One suite for all engines that are built in: scenes with what theory says of them. An engine skips only what it declares that it
-//! cannot; its tolerances follow from its order, or are those that were measured when it was chosen (facts, H5).
+//! What all engines that are built in have in common and case files cannot say: copies, exchange, thousands of worlds, robots beside each other.
+//! Scenes with what theory says of them are in tests/conformance. An engine skips only what it declares that it cannot.
 #![allow(clippy::unwrap_used)] // a test may panic
 
 mod support;
 
-#[path = "engines/bodies.rs"]
-mod bodies;
 #[path = "engines/life.rs"]
 mod life;
 #[path = "engines/robots.rs"]
@@ -69,15 +67,4 @@ fn link(w: &World, name: &str) -> (Pose, Twist) {
     let i = w.model().links.iter().position(|l| l.name == name).unwrap_or_else(|| panic!("no link {name}"));
     let s = w.new_snapshot();
     (s.link_pose[i], s.link_twist[i])
-}
-
-/// The longest step in which an engine moves bodies with one velocity, s; 0 for a second-order one.
-fn explicit_step(w: &World) -> f64 {
-    let s = w.settings();
-    let h = s.control_interval_ns as f64 * 1e-9 / f64::from(s.steps_per_interval);
-    match s.engine.name() {
-        "rbx" => 0.0,
-        "rapier" => h / f64::from(s.solver_iterations),
-        _ => h,
-    }
 }

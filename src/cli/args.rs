@@ -54,6 +54,13 @@ pub enum Command {
     ///
     /// Exit codes as those of simulate.
     Compare(Box<CompareArgs>),
+    /// The engines: which are in this program, what they can, and how near each comes to what theory says of the scenes in case
+    /// files.
+    ///
+    /// Exit code 0: all is within its tolerance, or beyond as the case says. 1: something is not, an engine does not take a scene, or a file
+    /// cannot be written. 2: an argument or a case is wrong.
+    #[command(after_long_help = crate::cli::conformance::help())]
+    Engines(EnginesArgs),
     /// Time per call of kinematics, rnea, crba, aba and step: medians, thread CPU time.
     Bench(BenchArgs),
     /// Forward dynamics of single states, to compare with other programs: one JSON object per line on standard input
@@ -99,6 +106,9 @@ pub struct InspectArgs {
     /// The flat ground z = 0, where the scene has none of its own.
     #[arg(long)]
     pub ground: bool,
+    /// What this engine does not honour of it, and what it calls the shapes that it makes of it; not with --full.
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["full", "urdf_with_inertials"])]
+    pub engine: Option<String>,
     /// JSON instead of tables.
     #[arg(long)]
     pub json: bool,
@@ -285,6 +295,26 @@ pub struct CompareArgs {
     /// JSON instead of tables; it also has where everything is at the end.
     #[arg(long)]
     pub json: bool,
+}
+
+/// `engines`.
+#[derive(Debug, Args)]
+pub struct EnginesArgs {
+    /// Case files: a folder of NAME.yaml, or one of them. Each is run on every engine of this program.
+    #[arg(long, value_name = "DIR")]
+    pub cases: Option<PathBuf>,
+    /// An engine to run; as often as needed. All that this program was built with, if none is given.
+    #[arg(long, value_name = "NAME", requires = "cases")]
+    pub engine: Vec<String>,
+    /// A page of documentation: what every engine can, its errors beside theory, CPU times.
+    #[arg(long, value_name = "FILE.md", requires = "cases")]
+    pub markdown: Option<PathBuf>,
+    /// JSON instead of tables.
+    #[arg(long)]
+    pub json: bool,
+    /// A row per case, quantity and engine.
+    #[arg(long, value_name = "FILE.csv", requires = "cases")]
+    pub csv: Option<PathBuf>,
 }
 
 /// `N` numbers separated by commas.

@@ -5,6 +5,7 @@ pub mod bench;
 pub mod check;
 pub mod commands;
 pub mod compare;
+pub mod conformance;
 pub mod drawing;
 mod drop;
 pub mod evaluate;
@@ -33,6 +34,7 @@ pub fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Engines(args) => conformance::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Evaluate(args) => evaluate::run(&args),
     }

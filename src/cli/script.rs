@@ -15,7 +15,7 @@ const ON_INTERVAL: f64 = 1e-6;
 /// One entry; what it does not name stays as it is.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+pub(super) struct Entry {
     /// Simulated time, s.
     at: f64,
     /// Name.
@@ -85,11 +85,25 @@ impl Script {
         let text = super::check::read_text(path)?;
         let entries: Vec<Spanned<Entry>> =
             serde_saphyr::from_str(&text).map_err(|e| format!("--script {shown}: {e}"))?;
+        let script = Self::compile(entries, &shown.to_string(), (world, d), (interval, count));
+        script.map_err(|reason| format!("--script {reason}"))
+    }
+
+    /// As [`Script::read`], of the entries of a file.
+    ///
+    /// # Errors
+    /// Names the file and line, and what is wrong there.
+    pub(super) fn compile(
+        entries: Vec<Spanned<Entry>>,
+        file: &str,
+        (world, d): (&World, &Description),
+        (interval, count): (f64, u64),
+    ) -> Result<Self, String> {
         let mut compiler = Compiler::new(world, d, interval);
         let mut script = Self::default();
         for entry in entries {
-            let place = format!("{shown}:{}", entry.referenced.line());
-            let event = compiler.event(&entry.value).map_err(|reason| format!("--script {place}: {reason}"))?;
+            let place = format!("{file}:{}", entry.referenced.line());
+            let event = compiler.event(&entry.value).map_err(|reason| format!("{place}: {reason}"))?;
             let odd = oddity(&entry.value, &event, (interval, count)).into_iter();
             script.warnings.extend(odd.chain(compiler.beyond(&event)).map(|w| format!("{place}: {w}")));
             script.events.push(event);

@@ -3,6 +3,7 @@
 use super::EngineKind;
 use crate::description::{Description, Finding, Position, Severity};
 use crate::model::{LinkFrame, LinkInfo, Model};
+use crate::shape::ContactForm;
 
 /// An item of a model that an engine does not honour.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +70,11 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
     }
     found.dedup();
     found
+}
+
+/// What an engine calls the shape that it makes of a form, where it is one of its own: rbx collides forms as they are.
+pub fn shape_name(kind: EngineKind, form: &ContactForm) -> Option<String> {
+    (kind == EngineKind::Rapier).then(|| super::rapier::shape_name(form))
 }
 
 /// The first of each kind (the same item, the same instead), and how many others there are.

@@ -5,9 +5,9 @@ use super::counts::{CommandCounts, CommandTopic};
 use super::exchange::CommandEnd;
 use super::log::Logger;
 use super::messages::{Float64MultiArray, JointState};
-use super::parameters::{ParameterServers, Values};
+use super::parameters::{Change, ParameterServers, Values};
 use super::topics::{Topics, command_qos};
-use crate::engine::{EngineKind, shortfalls};
+use crate::engine::{EngineKind, State, shortfalls};
 use crate::model::Model;
 use crate::world::AxisCommand;
 use futures::StreamExt;
@@ -113,13 +113,14 @@ impl Listener {
             engine: Cell::new(desk.values.pace().settings.engine),
         };
         let values = RefCell::new(desk.values);
+        let check = |values: &Values| inbox.check_parameters(values);
         let applied = |values: &Values| inbox.take_parameters(values);
         let serve = async {
             futures::join!(
                 inbox.listen(&self.topics.effort, CommandTopic::Effort, |m| Command::Effort(&m.data)),
                 inbox.listen(&self.topics.servo, CommandTopic::Servo, |m| Command::Servo(&m.data)),
                 inbox.listen(&self.topics.joint, CommandTopic::Joint, |m| Command::Joint(m)),
-                self.servers.serve(&self.node, &values, &applied),
+                self.servers.serve(&self.node, &values, Change { check: &check, applied: &applied }),
             );
         };
         let stop = async {
@@ -177,6 +178,16 @@ impl Inbox<'_> {
                 *told = true;
             }
         }
+    }
+
+    /// Another engine is made once on trial: what it cannot take is said in the answer. The control loop could only stay as it is.
+    fn check_parameters(&self, values: &Values) -> Result<(), String> {
+        let engine = values.pace().settings.engine;
+        if engine == self.engine.get() {
+            return Ok(());
+        }
+        let made = engine.build(self.model, &State::initial(self.model));
+        made.map(drop).map_err(|reason| format!("parameter 'engine' = {}: {reason}", engine.name()))
     }
 
     fn take_parameters(&self, values: &Values) {

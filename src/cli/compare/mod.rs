@@ -177,7 +177,7 @@ fn notes(world: &World) -> Vec<String> {
 }
 
 /// The engines by name, each once; all of this program, if none is named.
-fn kinds(names: &[String]) -> Result<Vec<EngineKind>, String> {
+pub(super) fn kinds(names: &[String]) -> Result<Vec<EngineKind>, String> {
     if names.is_empty() {
         return Ok(EngineKind::built().collect());
     }

@@ -1,5 +1,6 @@
 //! `realnoid inspect`: what is simulated, in numbers and as a picture.
 
+mod engine;
 mod groups;
 mod json;
 mod tables;
@@ -11,12 +12,20 @@ use super::base_by_name;
 use super::drawing::draw_robot;
 use super::load::{Loaded, load_or_say};
 use super::scene::{Fault, Scene, assemble};
+use crate::engine::EngineKind;
 use crate::model::Model;
 use std::process::ExitCode;
 pub use values::Unit;
 
 /// Prints tables, values in full, JSON, or the URDF with inertials.
 pub fn run(args: &InspectArgs) -> ExitCode {
+    let engine = match args.engine.as_deref().map(chosen).transpose() {
+        Ok(engine) => engine,
+        Err(reason) => {
+            eprintln!("error: --engine: {reason}");
+            return ExitCode::from(2);
+        }
+    };
     let (loaded, world) = match read(args) {
         Ok(both) => both,
         Err(failure) => return failure,
@@ -28,6 +37,7 @@ pub fn run(args: &InspectArgs) -> ExitCode {
         return ExitCode::FAILURE;
     }
     let unit = Unit::named(&args.unit);
+    let whole = world.as_ref().unwrap_or(&loaded.model);
     let effects = world.as_ref().map_or(loaded.model.effects, |m| m.effects);
     let text = if args.urdf_with_inertials {
         loaded.published
@@ -36,13 +46,23 @@ pub fn run(args: &InspectArgs) -> ExitCode {
         if let Some(m) = &world {
             all["world"] = world::json(m);
         }
+        if let Some(engine) = engine {
+            all["engine"] = engine::json(engine, whole);
+        }
         format!("{all:#}\n")
     } else if args.full {
         values::full(&loaded, unit)
     } else {
-        tables::tables(&loaded, unit, &effects) + &world.as_ref().map(world::table).unwrap_or_default()
+        let about = engine.map(|kind| engine::table(kind, whole)).unwrap_or_default();
+        tables::tables(&loaded, unit, &effects) + &world.as_ref().map(world::table).unwrap_or_default() + &about
     };
     super::say(&text)
+}
+
+/// An engine of this program.
+fn chosen(name: &str) -> Result<EngineKind, String> {
+    let kind = super::scene::engine(name)?;
+    kind.available().map(|()| kind)
 }
 
 /// The robot and, of a scene, everything.

@@ -72,7 +72,7 @@ fn base(base: Base) -> &'static str {
     if base == Base::Free { "free" } else { "fixed" }
 }
 
-fn form(form: &ContactForm) -> &'static str {
+pub(super) fn form(form: &ContactForm) -> &'static str {
     match form {
         ContactForm::HalfSpace => "half-space",
         ContactForm::Ball { .. } => "ball",

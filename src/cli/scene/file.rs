@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// The file.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SceneFile {
+pub(in crate::cli) struct SceneFile {
     /// Version of the format: 1.
     pub version: u32,
     /// World settings.
@@ -31,7 +31,7 @@ pub(super) struct SceneFile {
 /// `world:`; what is absent keeps its default.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct WorldSettings {
+pub(in crate::cli) struct WorldSettings {
     /// s.
     pub control_interval: Option<f64>,
     /// 1 … 1000.
@@ -54,7 +54,7 @@ pub(super) struct WorldSettings {
 /// `robot:` and an entry of `robots:`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Robot {
+pub(in crate::cli) struct Robot {
     /// Name, of a further robot.
     pub name: Option<String>,
     /// URDF file; a relative path starts at the scene file.
@@ -73,7 +73,7 @@ pub(super) struct Robot {
 /// An entry of `bodies:`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Body {
+pub(in crate::cli) struct Body {
     /// Name.
     pub name: String,
     /// In the world: x, y, z, qx, qy, qz, qw.
@@ -115,7 +115,7 @@ pub(super) struct Body {
 /// `ground:` with attributes.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Ground {
+pub(in crate::cli) struct Ground {
     /// As in `<surface>`.
     pub friction: Option<f64>,
     /// m.
@@ -135,7 +135,7 @@ pub(super) struct Ground {
 /// `defaults:`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Defaults {
+pub(in crate::cli) struct Defaults {
     /// Of all surfaces.
     #[serde(default)]
     pub surface: SurfaceValues,
@@ -144,7 +144,7 @@ pub(super) struct Defaults {
 /// `defaults: surface:`.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SurfaceValues {
+pub(in crate::cli) struct SurfaceValues {
     /// As in `<surface>`.
     pub friction: Option<f64>,
     /// m.

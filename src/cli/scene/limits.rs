@@ -21,7 +21,7 @@ pub(super) fn within(name: &str, unit: &str, values: &[f64]) -> Result<(), Strin
 }
 
 /// What a YAML reader says, in words for people who write scenes.
-pub(super) fn plain(said: &str) -> String {
+pub(in crate::cli) fn plain(said: &str) -> String {
     let words = [
         ("error: line ", "line "),
         (", set DuplicateKeyPolicy in Options if acceptable", ""),

@@ -14,9 +14,11 @@ use crate::model::{Base, Collider, EFFECT_NAMES};
 use crate::world::{EngineKind, Integrator, Settings};
 pub use assemble::{Assembly, Fault, Spare, Switch, assemble, switch_effect};
 use body::BodyEntry;
-use file::{Robot, SceneFile, WorldSettings};
+pub(super) use file::SceneFile;
+use file::{Robot, WorldSettings};
 use ground::ground;
-use limits::{plain, shown, within};
+pub(super) use limits::plain;
+use limits::{shown, within};
 use nalgebra::{Quaternion, Translation3};
 use serde_saphyr::{Location, Spanned};
 pub use start::{Start, couple, inside, outside};
@@ -80,6 +82,11 @@ impl Scene {
         }
         let file = serde_saphyr::from_str(&text).map_err(|e| told(plain(&e.to_string())))?;
         Self::checked(file, path).map_err(told)
+    }
+
+    /// A scene that stands in another file, at `path`.
+    pub(super) fn of_words(words: SceneFile, path: &Path) -> Result<Self, String> {
+        Self::checked(words, path)
     }
 
     fn checked(file: SceneFile, path: &Path) -> Result<Self, String> {

@@ -4,6 +4,12 @@ use super::parts::embodied;
 use super::shapes::{is_approximate, shape};
 use crate::engine::honour::{Shortfall, name_of};
 use crate::model::Model;
+use crate::shape::ContactForm;
+
+/// What rapier calls the shape that it makes of a form.
+pub fn shape_name(form: &ContactForm) -> String {
+    shape(form).map_or_else(|| "nothing: it does not collide".into(), |(s, _)| format!("{:?}", s.shape_type()))
+}
 
 /// In the order of the model.
 pub fn shortfalls(m: &Model) -> Vec<Shortfall> {

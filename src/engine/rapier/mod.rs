@@ -23,7 +23,7 @@ use crate::dynamics::{Kinematics, kinematics};
 use crate::math::V3;
 use crate::model::Model;
 use crate::solver::{AxisCommand, Books, ContactPoint};
-pub use honour::shortfalls;
+pub use honour::{shape_name, shortfalls};
 
 use contacts::{Contacts, Filter, insert_colliders};
 use joints::{Load, Rows};

@@ -11,8 +11,14 @@ use ros2_client::rcl_interfaces as msg;
 use ros2_client::{Message, Name, Node, NodeOptions, ParameterValue, Server, ServiceMapping, ServiceTypeName};
 use std::cell::RefCell;
 
-/// Called with the new values after a change.
-pub type Applied<'a> = &'a dyn Fn(&Values);
+/// What is done about a change.
+#[derive(Clone, Copy)]
+pub struct Change<'a> {
+    /// Called with the new values before they count; a reason refuses them.
+    pub check: &'a dyn Fn(&Values) -> Result<(), String>,
+    /// Called with the new values once they count.
+    pub applied: &'a dyn Fn(&Values),
+}
 
 /// The servers.
 pub struct ParameterServers {
@@ -45,18 +51,18 @@ impl ParameterServers {
     }
 
     /// Answers requests until it is dropped.
-    pub async fn serve(&self, node: &Node, values: &RefCell<Values>, applied: Applied<'_>) {
+    pub async fn serve(&self, node: &Node, values: &RefCell<Values>, change: Change<'_>) {
         let futures: Vec<LocalBoxFuture<()>> = vec![
             Box::pin(answer(&self.get, |r| get(&values.borrow(), &r.names))),
             Box::pin(answer(&self.types, |r| types(&values.borrow(), &r.names))),
             Box::pin(answer(&self.list, |r| list(&values.borrow(), &r))),
             Box::pin(answer(&self.describe, |r| describe(&values.borrow(), &r.names))),
             Box::pin(answer(&self.set, |r| {
-                let results = r.parameter.into_iter().map(|p| set(node, values, applied, vec![p])).collect();
+                let results = r.parameter.into_iter().map(|p| set(node, values, change, vec![p])).collect();
                 msg::SetParametersResponse { results }
             })),
             Box::pin(answer(&self.set_atomically, |r| msg::SetParametersAtomicallyResponse {
-                result: set(node, values, applied, r.parameter),
+                result: set(node, values, change, r.parameter),
             })),
         ];
         futures::future::join_all(futures).await;
@@ -163,7 +169,7 @@ fn blank() -> raw::ParameterDescriptor {
 fn set(
     node: &Node,
     values: &RefCell<Values>,
-    applied: Applied,
+    change: Change,
     parameters: Vec<raw::Parameter>,
 ) -> raw::SetParametersResult {
     let mut changed = values.borrow().clone();
@@ -172,12 +178,15 @@ fn set(
             return raw::SetParametersResult { successful: false, reason };
         }
     }
+    if let Err(reason) = (change.check)(&changed) {
+        return raw::SetParametersResult { successful: false, reason };
+    }
     for p in parameters {
         if let Err(reason) = node.set_parameter(&p.name, p.value.into()) {
             return raw::SetParametersResult { successful: false, reason };
         }
     }
     *values.borrow_mut() = changed;
-    applied(&values.borrow());
+    (change.applied)(&values.borrow());
     raw::SetParametersResult { successful: true, reason: String::new() }
 }
