@@ -14,6 +14,7 @@ mod kind;
 pub mod maximal;
 mod midpoint;
 mod paid;
+mod pairs;
 mod rapier;
 mod rbx;
 mod rk4;
