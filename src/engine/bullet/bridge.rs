@@ -2,8 +2,8 @@
 //! origin in the centre of mass and its axes along the principal ones. Poses are x, y, z and a unit quaternion x, y, z, w.
 
 pub use ffi::{
-    BodySpec, Contact, JointForce, JointSpec, Motor, MotorInput, Moving, PairInput, PairSpec, ShapeKind, ShapeSpec, Spec,
-    StepInput,
+    BodySpec, Contact, JointForce, JointSpec, Motor, MotorInput, Moving, PairInput, PairSpec, ShapeKind, ShapeSpec,
+    Spec, StepInput,
 };
 pub use ffi::{World, build};
 

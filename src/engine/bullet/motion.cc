@@ -1,15 +1,24 @@
 #include "motion.h"
 #include <cmath>
+#include "LinearMath/btTransformUtil.h"
 
 namespace realnoid::bullet {
 
+namespace {
+
+bool is_cut(const btRigidBody& b, double time) { return b.getAngularVelocity().length() * std::abs(time) > ANGULAR_MOTION_THRESHOLD; }
+
+}  // namespace
+
 btTransform ahead(const btTransform& from, const btRigidBody& b, double time) {
-    const btVector3& w = b.getAngularVelocity();
-    const double half = 0.5 * time * w.length();
-    // sin(half)/|w|, also without a turn.
-    const double scale = 0.5 * time * (half * half < 1e-8 ? 1 - half * half / 6 : std::sin(half) / half);
-    const btQuaternion turn(scale * w.x(), scale * w.y(), scale * w.z(), std::cos(half));
-    return btTransform((turn * from.getRotation()).normalized(), from.getOrigin() + b.getLinearVelocity() * time);
+    const btVector3 &w = b.getAngularVelocity(), &v = b.getLinearVelocity();
+    if (!is_cut(b, time)) {
+        btTransform at;
+        btTransformUtil::integrateTransform(from, v, w, time, at);
+        return at;
+    }
+    const btQuaternion turn(w.normalized(), w.length() * time);
+    return btTransform((turn * from.getRotation()).normalized(), from.getOrigin() + v * time);
 }
 
 void Dynamics::integrateTransforms(btScalar h) {
@@ -18,7 +27,7 @@ void Dynamics::integrateTransforms(btScalar h) {
     btDiscreteDynamicsWorld::integrateTransforms(h);
     for (int i = 0; i < m_nonStaticRigidBodies.size(); i++) {
         btRigidBody& b = *m_nonStaticRigidBodies[i];
-        if (b.isActive() && !b.isStaticOrKinematicObject()) b.proceedToTransform(ahead(before_[i], b, h));
+        if (b.isActive() && is_cut(b, h)) b.proceedToTransform(ahead(before_[i], b, h));
     }
 }
 

@@ -10,7 +10,7 @@
 //! | universal | 3 shifts; a point on the child's second axis stays in the plane across the first | x of (parent, child), z of (child, parent) |
 //! | spherical | 3 shifts | x of (child, parent), turned along the gradient of the angle in every step |
 //!
-//! Each axis has one joint for its motor, and one for its stops if it has hard ones.
+//! Hinges and slides have motor and stops in the joint that holds them; the other axes have one joint for their motor, and one for their stops if they are hard.
 
 use super::convert::{facing, frame};
 use super::pairs::Pair;
@@ -27,6 +27,10 @@ use rapier3d_f64::prelude::{GenericJoint, ImpulseJointHandle, JointAxesMask, Joi
 
 /// A stop further away than this is out of reach of a step, rad: rapier measures angles up to half a turn.
 const REACH: f64 = 1.0;
+
+/// A stop further away than this, and than so many substeps at the present speed, is not looked at, rad or m.
+const MARGIN: f64 = 0.05;
+const AHEAD: f64 = 4.0;
 
 /// All axes.
 #[derive(Clone, Debug)]
@@ -146,6 +150,7 @@ impl Rows {
             let piece = laws.motor(i, h);
             row.set_motor(sim, g, &piece);
             match laws.stop(i) {
+                Some(stop) if !is_near(stop, state.axis(m, i).1, h) => row.lift_stop(sim),
                 Some(stop) => row.set_stop(sim, k, g, (state.axis(m, i).0, stop)),
                 None => row.lift_stop(sim),
             }
@@ -167,12 +172,17 @@ impl Rows {
     }
 }
 
+/// May an axis come to a stop within a few substeps of `h` seconds?
+fn is_near([low, high]: [f64; 2], v: f64, h: f64) -> bool {
+    low.max(-high) > -(MARGIN + AHEAD * h * v.abs())
+}
+
 /// Sets the range in which a body may turn about `turned`'s x from where it is: the child is rapier's first body.
 pub(super) fn watch(joint: &mut GenericJoint, relative: &M3<f64>, turned: &M3<f64>, [from, to]: [f64; 2]) {
     let range = |x: f64| x.max(-REACH).min(REACH);
     joint.limit_axes = JointAxesMask::ANG_X;
-    joint.local_frame1 = frame(turned, V3::default());
-    joint.local_frame2 = frame(&relative.mm(turned), V3::default());
+    joint.local_frame1.rotation = frame(turned, V3::default()).rotation;
+    joint.local_frame2.rotation = frame(&relative.mm(turned), V3::default()).rotation;
     let own = &mut joint.limits[JointAxis::AngX as usize];
     (own.min, own.max) = (range(-to), range(-from));
 }
@@ -208,7 +218,7 @@ impl Row {
         let (first, second) = if swapped { (second, first) } else { (first, second) };
         let joint = |sim: &mut Sim| insert(sim, parts, first, second, JointAxesMask::empty());
         // A hinge turns about the same axis as its joint: one joint for all. Its stops are solved with its locks then.
-        let hinge = holds[child].filter(|_| b.joint == JointType::Revolute);
+        let hinge = holds[child].filter(|_| matches!(b.joint, JointType::Revolute | JointType::Prismatic));
         let motor = hinge.or_else(|| joint(sim))?;
         let stop = if m.axes[axis].has_hard_stops() { hinge.or_else(|| joint(sim)) } else { None };
         Some(Self { along, axis: row_axis, swapped, parent, child, motor, stop, length: 1.0 })
@@ -250,6 +260,10 @@ impl Row {
     /// The range about the present position `q` that rapier watches, in its measure.
     fn set_stop(&self, sim: &mut Sim, k: &Kinematics, g: V3<f64>, (q, [low, high]): (f64, [f64; 2])) {
         let Some(joint) = self.stop.and_then(|stop| sim.joints.get_mut(stop, false)) else { return };
+        if self.stop != Some(self.motor) {
+            // It knows that the bodies turn about the joint, not each about its centre.
+            joint.data.locked_axes = JointAxesMask::LIN_AXES;
+        }
         if let Along::Angle { .. } = self.along {
             let turned = facing(g * (1.0 / self.length));
             let relative = k.r[self.parent].tmm(&k.r[self.child]);
@@ -264,10 +278,13 @@ impl Row {
         (own.min, own.max) = (limits[0].max(f64::MIN), limits[1].min(f64::MAX));
     }
 
-    /// No stop in this step: of H at the pole, where it is no axis of its own.
+    /// No stop in this step: none is near, or it is that of H at the pole, where it is no axis of its own.
     fn lift_stop(&self, sim: &mut Sim) {
         if let Some(joint) = self.stop.and_then(|stop| sim.joints.get_mut(stop, false)) {
             joint.data.limit_axes = JointAxesMask::empty();
+            if self.stop != Some(self.motor) {
+                joint.data.locked_axes = JointAxesMask::empty();
+            }
         }
     }
 
