@@ -179,7 +179,7 @@ fn is_near([low, high]: [f64; 2], v: f64, h: f64) -> bool {
 
 /// Sets the range in which a body may turn about `turned`'s x from where it is: the child is rapier's first body.
 pub(super) fn watch(joint: &mut GenericJoint, relative: &M3<f64>, turned: &M3<f64>, [from, to]: [f64; 2]) {
-    let range = |x: f64| x.max(-REACH).min(REACH);
+    let range = |x: f64| x.clamp(-REACH, REACH);
     joint.limit_axes = JointAxesMask::ANG_X;
     joint.local_frame1.rotation = frame(turned, V3::default()).rotation;
     joint.local_frame2.rotation = frame(&relative.mm(turned), V3::default()).rotation;
