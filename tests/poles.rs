@@ -110,10 +110,11 @@ fn drives_are_booked_with_what_they_did() {
     }
 }
 
-/// Restitution of stops is 0: a head that falls onto that of its neck stays there.
+/// Restitution of stops is 0: a head that falls onto that of its neck stays there. Not in Bullet, where half of its speed comes back
+/// (decision 0020).
 #[test]
 fn a_head_does_not_bounce_off_its_stop() {
-    for engine in engines() {
+    for engine in engines().filter(|e| *e != EngineKind::Bullet) {
         let mut w = nod(engine);
         let m = w.model().clone();
         let neck = m.axis("neck_pitch").unwrap();
