@@ -11,8 +11,8 @@ mod bullet {
     use std::path::Path;
 
     const ROOM: &str = "src/engine/bullet";
-    const SOURCES: [&str; 4] = ["shapes.cc", "solver.cc", "surfaces.cc", "world.cc"];
-    const HEADERS: [&str; 4] = ["shim.h", "shapes.h", "solver.h", "surfaces.h"];
+    const SOURCES: [&str; 6] = ["drives.cc", "motion.cc", "shapes.cc", "solver.cc", "surfaces.cc", "world.cc"];
+    const HEADERS: [&str; 6] = ["drives.h", "motion.h", "shim.h", "shapes.h", "solver.h", "surfaces.h"];
 
     pub fn build() {
         // Debian has a float32 build beside it, `bullet`.

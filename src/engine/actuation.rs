@@ -170,6 +170,16 @@ impl Actuation {
         self.rates[group].gradient[angle]
     }
 
+    /// Books what hard stops gave in a part of a step of `h` seconds that ends with this state, before [`Actuation::finish`]: per
+    /// axis `stops`, N·m or N. Impulses along the mean of the speeds at both ends, which is exact for impacts.
+    pub fn book_stops(&mut self, m: &Model, h: f64, state: &State, stops: &[f64]) {
+        for (i, (at, stop)) in self.axes.iter().zip(stops).enumerate() {
+            if *stop != 0.0 {
+                self.books.work.losses -= 0.5 * h * stop * (at.v + state.axis(m, i).1);
+            }
+        }
+    }
+
     /// Ends a step, or a part of it, with this state. `motors`: per axis, what its motor gave on average, N·m or N.
     pub fn finish(&mut self, m: &Model, start: (f64, f64), state: &State, motors: &[f64]) {
         let (h, whole) = start;

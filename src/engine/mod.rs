@@ -15,6 +15,7 @@ pub mod maximal;
 mod midpoint;
 mod outline;
 mod paid;
+mod pairs;
 #[cfg(feature = "physx")]
 pub mod physx;
 mod rapier;

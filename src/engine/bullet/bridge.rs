@@ -2,7 +2,8 @@
 //! origin in the centre of mass and its axes along the principal ones. Poses are x, y, z and a unit quaternion x, y, z, w.
 
 pub use ffi::{
-    BodySpec, Contact, JointForce, JointSpec, Motor, MotorInput, Moving, ShapeKind, ShapeSpec, Spec, StepInput,
+    BodySpec, Contact, JointForce, JointSpec, Motor, MotorInput, Moving, PairInput, PairSpec, ShapeKind, ShapeSpec,
+    Spec, StepInput,
 };
 pub use ffi::{World, build};
 
@@ -98,7 +99,8 @@ mod ffi {
     struct Motor {
         joint: u32,
         dof: u32,
-        /// Its range is more than Bullet knows of an angle: the stops that are near are told in each step.
+        /// Its range is more than Bullet knows of an angle, or Bullet's row is not of its measure: the stops that are near are told in each
+        /// step.
         far: bool,
     }
 
@@ -115,6 +117,23 @@ mod ffi {
         stop: [f64; 2],
     }
 
+    /// The turn about the child's x of a joint with three axes, which has a range of its own where two of them are nearly one.
+    #[derive(Clone, Copy, Debug)]
+    struct PairSpec {
+        joint: u32,
+        /// Share of the error that one step takes back.
+        erp: f64,
+    }
+
+    /// The same in a step.
+    #[derive(Clone, Copy, Debug, Default)]
+    struct PairInput {
+        /// Is it in force?
+        on: bool,
+        /// Way to the lower and to the upper end, rad.
+        stop: [f64; 2],
+    }
+
     /// A whole world.
     #[derive(Clone, Debug, Default)]
     struct Spec {
@@ -122,6 +141,7 @@ mod ffi {
         shapes: Vec<ShapeSpec>,
         joints: Vec<JointSpec>,
         motors: Vec<Motor>,
+        pairs: Vec<PairSpec>,
         /// Pairs of links, in order and each ascending, whose shapes never touch: two numbers each.
         excluded: Vec<i32>,
     }
@@ -170,7 +190,8 @@ mod ffi {
         /// What Bullet or the C++ library could not do, and indices that do not fit.
         fn build(spec: &Spec) -> Result<UniquePtr<World>>;
 
-        /// One step. `motors` and `efforts` (what the motors gave, without `torque`) in the order of `Spec::motors`, `bodies` in that of `Spec::bodies`.
+        /// One step. `motors` and `efforts` (what the motors gave, without `torque`) in the order of `Spec::motors`, `pairs` in that of
+        /// `Spec::pairs`, `bodies` in that of `Spec::bodies`.
         ///
         /// # Errors
         /// Sizes that do not fit, and exceptions.
@@ -178,6 +199,7 @@ mod ffi {
             self: Pin<&mut World>,
             input: &StepInput,
             motors: &[MotorInput],
+            pairs: &[PairInput],
             efforts: &mut [f64],
             bodies: &mut [Moving],
         ) -> Result<()>;

@@ -4,19 +4,21 @@
 //! friction and damping of the axes are the same laws as in rbx ([`Actuation`]); stops are Bullet's.
 
 mod bridge;
+mod exchange;
 mod plan;
+mod power;
 mod shapes;
 mod turns;
 
 use super::actuation::{Actuation, Start};
-use super::maximal::read_state;
+use super::pairs::is_steep;
 use super::sleep::same;
 use super::{Engine, EngineKind, Integrator, State, StepReport, StepSettings};
-use crate::dynamics::{Kinematics, kinematics, kinematics_of};
-use crate::math::{M3, V3, Vec3};
-use crate::model::{AxisSlot, Model};
+use crate::dynamics::{Kinematics, kinematics};
+use crate::math::{V3, Vec3};
+use crate::model::Model;
 use crate::solver::{AxisCommand, Books, ContactPoint};
-use bridge::{Contact, MotorInput, Moving, StepInput, World};
+use bridge::{Contact, MotorInput, Moving, PairInput, StepInput, World};
 use cxx::UniquePtr;
 use plan::Plan;
 use std::sync::{Mutex, PoisonError};
@@ -33,10 +35,15 @@ pub struct Bullet {
     before: State,
     /// As Bullet has the bodies: joints may gape.
     k: Kinematics,
+    /// At the start of a part of a step.
+    from: (State, Kinematics),
     /// Of the last step.
     commands: Vec<AxisCommand>,
     bodies: Vec<Moving>,
     inputs: Vec<MotorInput>,
+    pairs: Vec<PairInput>,
+    /// Per constraint.
+    forces: Vec<JointForce>,
     given: Vec<f64>,
     /// Per axis: what its motor gave, N·m or N.
     motors: Vec<f64>,
@@ -62,6 +69,9 @@ impl std::fmt::Debug for Held {
     }
 }
 
+/// Parts of a step near a pole, each of which has its own gradients.
+const FRESH: u32 = 10;
+
 impl Bullet {
     /// # Errors
     /// What Bullet cannot take, and what it could not do.
@@ -72,9 +82,12 @@ impl Bullet {
             state: state.clone(),
             before: state.clone(),
             k: Kinematics::new(m),
+            from: (state.clone(), Kinematics::new(m)),
             commands: Vec::with_capacity(m.axes.len()),
             bodies: vec![],
             inputs: vec![],
+            pairs: vec![],
+            forces: vec![],
             given: vec![],
             motors: vec![0.0; m.axes.len()],
             actuation: Actuation::of_warm_motors(m),
@@ -120,6 +133,8 @@ impl Bullet {
         }
         *self.world.get() = bridge::build(&self.plan.spec).map_err(|e| format!("bullet: {e}"));
         self.inputs = vec![MotorInput::default(); self.plan.spec.motors.len()];
+        self.pairs = vec![PairInput::default(); self.plan.spec.pairs.len()];
+        self.forces = vec![JointForce::default(); self.plan.links.len()];
         self.given = vec![0.0; self.inputs.len()];
         self.received = if self.plan.spec.shapes.is_empty() { vec![] } else { vec![V3::default(); self.k.r.len()] };
         self.contacts.clear();
@@ -136,92 +151,33 @@ impl Bullet {
         }
     }
 
-    /// What a row of Bullet's counts of a unit of an axis: it goes along the unit vector of the axis' gradient; along its
-    /// opposite, negative.
-    fn scale(&self, m: &Model, axis: usize) -> f64 {
-        match m.axes[axis].slot {
-            AxisSlot::Euler { group, angle } => {
-                let g = self.actuation.gradient(group, angle);
-                // Bullet's middle axis is z × x, which turns over where cos P changes its sign.
-                let over = angle == 1 && crate::math::sin_cos(self.before.angles[group][1]).1 < 0.0;
-                if over { -g.dot(g).sqrt() } else { g.dot(g).sqrt() }
-            }
-            _ => turns::scale(&self.plan.links, &m.axes[axis].slot, m, &self.state),
-        }
-    }
-
-    fn write_inputs(&mut self, m: &Model, h: f64) {
-        for axis in 0..m.axes.len() {
-            let Some(driven) = self.plan.axes[axis] else { continue };
-            let (piece, scale) = (self.actuation.motor(axis, h), self.scale(m, axis));
-            let [low, high] = self.actuation.stop(axis).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-            let (sense, scale) = (driven.sense * scale.signum(), scale.abs());
-            let soft = if piece.damping.is_finite() { 1.0 / (piece.damping * scale * scale) } else { 0.0 };
-            self.inputs[driven.motor] = MotorInput {
-                torque: sense * piece.torque * scale,
-                speed: sense * piece.speed / scale,
-                cfm: if piece.damping > 0.0 { soft } else { 0.0 },
-                bound: if piece.damping > 0.0 { piece.bound * scale } else { 0.0 },
-                stop: if driven.sense > 0.0 { [low, high] } else { [-high, -low] },
-            };
-        }
-    }
-
-    fn read_motors(&mut self, m: &Model) {
-        for axis in 0..m.axes.len() {
-            if let Some(driven) = self.plan.axes[axis] {
-                self.motors[axis] = driven.sense * self.given[driven.motor] / self.scale(m, axis);
-            }
-        }
-    }
-
-    /// From Bullet's bodies to the state.
-    fn read(&mut self, m: &Model) {
-        for (seat, moving) in self.plan.bodies.iter().zip(&self.bodies) {
-            let x_wb = plan::pose(&moving.pose) * seat.frame.inverse();
-            let (w, v) = (Vec3::from(moving.angular), Vec3::from(moving.linear));
-            let origin = v - w.cross(&(x_wb.rotation * seat.frame.translation.vector));
-            let (r, i) = (x_wb.rotation.inverse(), seat.body);
-            self.k.r[i] = M3::from(*x_wb.rotation.to_rotation_matrix().matrix());
-            self.k.p[i] = V3::from(x_wb.translation.vector);
-            (self.k.w[i], self.k.v[i]) = (V3::from(r * w), V3::from(r * origin));
-        }
-        for link in self.plan.links.iter().filter(|l| !l.turns.is_empty()) {
-            turns::read(m, link, &self.k, &mut self.state);
-        }
-        kinematics_of(m, &mut self.k, (&self.state.q, &self.state.v), &self.plan.carried);
-        self.drift = self.drift.max(read_state(m, &self.k, &mut self.state).linear);
-    }
-
-    fn read_contacts(&mut self, m: &Model) -> Result<(), String> {
-        if self.plan.spec.shapes.is_empty() {
-            return Ok(());
-        }
-        if let Ok(world) = self.world.get().as_ref().map_err(|_| ()) {
-            world.contacts(&mut self.contacts).map_err(|e| e.to_string())?;
-        }
-        self.received.fill(V3::default());
-        for c in &self.contacts {
-            self.worst_penetration = self.worst_penetration.max(c.depth);
-            let force = V3::new(c.force[0], c.force[1], c.force[2]);
-            for (shape, force) in c.shapes.iter().zip([-force, force]) {
-                let body = self.plan.spec.shapes.get(*shape as usize).map_or(-1, |s| s.body);
-                if let Some(seat) = usize::try_from(body).ok().and_then(|i| self.plan.bodies.get(i)) {
-                    self.received[seat.body] += force;
-                }
-            }
-        }
-        debug_assert!(self.received.len() == m.bodies.len());
-        Ok(())
-    }
-
-    fn advance(&mut self, m: &Model, s: &StepSettings) -> Result<(), String> {
-        let input = StepInput { h: s.h, gravity: s.gravity, iterations: i32::try_from(s.passes).unwrap_or(i32::MAX) };
-        let (inputs, given, bodies) = (&self.inputs, &mut self.given, &mut self.bodies);
+    fn advance(&mut self, m: &Model, s: &StepSettings, h: f64) -> Result<(), String> {
+        let input = StepInput { h, gravity: s.gravity, iterations: i32::try_from(s.passes).unwrap_or(i32::MAX) };
+        let (given, bodies) = (&mut self.given, &mut self.bodies);
         let world = self.world.get().as_mut().map_err(|e| e.clone())?;
-        let world = world.as_mut().ok_or_else(String::new)?;
-        world.step(&input, inputs, given, bodies).map_err(|e| format!("bullet: {e}"))?;
-        self.read_contacts(m)
+        let mut world = world.as_mut().ok_or_else(String::new)?;
+        let done = world.as_mut().step(&input, &self.inputs, &self.pairs, given, bodies);
+        done.and_then(|()| world.joint_forces(&mut self.forces)).map_err(|e| format!("bullet: {e}"))?;
+        self.read_contacts(m, h / s.h)
+    }
+
+    /// A part of a step, of `h` seconds. Was a 3DOF group at its pole?
+    fn part(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, h: f64) -> Result<bool, String> {
+        self.from.0.copy_from(&self.state);
+        self.from.1.copy_from(&self.k);
+        let start = Start { state: &self.from.0, commands, effects: s.effects, h: (h, s.h) };
+        let at_pole = self.actuation.prepare(m, &start);
+        self.write_inputs(m, h);
+        self.advance(m, s, h)?;
+        self.read_motors(m);
+        self.read(m);
+        if !self.state.finite() {
+            return Err("bullet: the state is not finite".into());
+        }
+        let work = power::work(self, &self.forces, [&self.from.1, &self.k], h);
+        self.actuation.books.work.losses -= work;
+        self.actuation.finish(m, (h, s.h), &self.state, &self.motors);
+        Ok(at_pole)
     }
 
     /// Per joint between two bodies with mass: what it gave its child in the last step, without what its motors gave.
@@ -253,23 +209,21 @@ impl Engine for Bullet {
             self.wake(m);
         }
         self.actuation.open_books();
-        let start = Start { state: &self.before, commands, effects: s.effects, h: (s.h, s.h) };
-        let at_pole = self.actuation.prepare(m, &start);
-        self.write_inputs(m, s.h);
-        if let Err(fault) = self.advance(m, s) {
-            *self.world.get() = Err(fault);
-            return StepReport { diverged: true, at_pole, ..StepReport::default() };
+        self.received.fill(V3::default());
+        let parts = if is_steep(&self.state) { FRESH } else { 1 };
+        let mut report = StepReport::default();
+        for _ in 0..parts {
+            match self.part(m, commands, s, s.h / f64::from(parts)) {
+                Ok(at_pole) => report.at_pole |= at_pole,
+                Err(fault) => {
+                    self.state.copy_from(&self.before);
+                    *self.world.get() = Err(fault);
+                    report.diverged = true;
+                    break;
+                }
+            }
         }
-        self.read_motors(m);
-        self.read(m);
-        let finite = self.state.finite();
-        if finite {
-            self.actuation.finish(m, (s.h, s.h), &self.state, &self.motors);
-        } else {
-            self.state.copy_from(&self.before);
-            *self.world.get() = Err("bullet: the state is not finite".into());
-        }
-        StepReport { diverged: !finite, at_pole, ..StepReport::default() }
+        report
     }
 
     fn state(&self) -> &State {
@@ -293,6 +247,7 @@ impl Engine for Bullet {
         self.before = state.clone();
         self.state = state;
         self.k = Kinematics::new(m);
+        self.from = (self.before.clone(), Kinematics::new(m));
         self.actuation.refit(m);
         self.motors.fill(0.0);
         self.remake(m);
@@ -358,9 +313,12 @@ impl Engine for Bullet {
             state: self.state.clone(),
             before: self.before.clone(),
             k: self.k.clone(),
+            from: self.from.clone(),
             commands: self.commands.clone(),
             bodies: self.bodies.clone(),
             inputs: vec![],
+            pairs: vec![],
+            forces: vec![],
             given: vec![],
             motors: self.motors.clone(),
             actuation: self.actuation.clone(),

@@ -1,9 +1,10 @@
 //! A [`Model`] as Bullet takes it (tables 6-11 to 6-14 of the source): a body for each body that has mass, and one
 //! btGeneric6DofSpring2Constraint for all that lies between two of them.
 
-use super::bridge::{BodySpec, JointSpec, Motor, Moving, Spec};
+use super::bridge::{BodySpec, JointSpec, Motor, Moving, PairSpec, Spec};
 use super::shapes;
 use crate::engine::honour::name_of;
+use crate::engine::pairs::Pair;
 use crate::math::{Mat3, Pose, Quat, Vec3};
 use crate::model::{Axis, AxisSlot, Body, JointType, Model, Softness};
 use nalgebra::{Rotation3, SymmetricEigen, Translation3, UnitQuaternion};
@@ -32,6 +33,8 @@ pub struct Plan {
     pub links: Vec<Link>,
     /// Per axis; `None`: nothing that Bullet moves.
     pub axes: Vec<Option<Driven>>,
+    /// Groups with three axes whose stops need a row more near the pole, in the order of `Spec::pairs`.
+    pub pairs: Vec<Pair>,
     /// Bodies without mass, ascending: where others put them.
     pub carried: Vec<usize>,
 }
@@ -77,6 +80,7 @@ impl Plan {
             links: vec![],
             axes: vec![None; m.axes.len()],
             carried: vec![],
+            pairs: vec![],
         };
         let mut index = vec![None; m.bodies.len()];
         for (i, b) in m.bodies.iter().enumerate().skip(1) {
@@ -163,20 +167,30 @@ impl Plan {
         };
         for free in &shape.free {
             (joint.lower[free.dof], joint.upper[free.dof]) = (1.0, -1.0);
-            self.add_axis(m, free, &mut joint);
+            self.add_axis(m, (free, shape.free.len() > 1), &mut joint);
         }
+        self.add_pair(m, turning.first().copied());
         self.spec.joints.push(joint);
         let turns = if turning.len() > 1 { shape.turns() } else { vec![] };
         self.links.push(Link { parent, child, frames, turns });
         Ok(())
     }
 
-    fn add_axis(&mut self, m: &Model, free: &Free, joint: &mut JointSpec) {
+    /// For the constraint that comes next, if it is that of a 3DOF group.
+    fn add_pair(&mut self, m: &Model, body: Option<usize>) {
+        let group = m.eulers.iter().position(|e| Some(e.body) == body);
+        if let Some(pair) = group.and_then(|g| Pair::of(m, g)).filter(|_| m.effects.limits) {
+            self.spec.pairs.push(PairSpec { joint: self.spec.joints.len() as u32, erp: m.axes[pair.roll].stop.erp });
+            self.pairs.push(pair);
+        }
+    }
+
+    fn add_axis(&mut self, m: &Model, (free, several): (&Free, bool), joint: &mut JointSpec) {
         let Some(axis) = free.axis else { return };
         let a = &m.axes[axis];
         // Soft ones are part of the law of the axis.
         let stops = m.effects.limits && a.has_hard_stops();
-        let far = stops && !native(a);
+        let far = stops && !native(a, several);
         if stops {
             (joint.erp[free.dof], joint.cfm[free.dof]) = (a.stop.erp, 0.0);
         }
@@ -190,9 +204,9 @@ impl Plan {
     }
 }
 
-/// Can Bullet hold an axis to its range by itself?
-fn native(a: &Axis) -> bool {
-    a.kind == crate::model::AxisKind::Linear || (a.lower >= -WIDEST && a.upper <= WIDEST)
+/// Can Bullet hold an axis to its range by itself? Of several turns, its rows are not of the measure of their angles.
+fn native(a: &Axis, several: bool) -> bool {
+    a.kind == crate::model::AxisKind::Linear || (!several && a.lower >= -WIDEST && a.upper <= WIDEST)
 }
 
 /// A degree of freedom of a constraint that is not locked.

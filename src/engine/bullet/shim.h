@@ -9,6 +9,7 @@ namespace realnoid::bullet {
 struct Spec;
 struct StepInput;
 struct MotorInput;
+struct PairInput;
 struct Moving;
 struct Contact;
 struct JointForce;
@@ -20,8 +21,8 @@ public:
     World(const World&) = delete;
     World& operator=(const World&) = delete;
 
-    void step(const StepInput& input, rust::Slice<const MotorInput> motors, rust::Slice<double> efforts,
-              rust::Slice<Moving> bodies);
+    void step(const StepInput& input, rust::Slice<const MotorInput> motors, rust::Slice<const PairInput> pairs,
+              rust::Slice<double> efforts, rust::Slice<Moving> bodies);
     void contacts(rust::Vec<Contact>& out) const;
     void joint_forces(rust::Slice<JointForce> out) const;
     void wake();

@@ -7,9 +7,10 @@
 #include "BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h"
 #include "btBulletDynamicsCommon.h"
 #include "realnoid/src/engine/bullet/bridge.rs.h"
+#include "drives.h"
+#include "motion.h"
 #include "shapes.h"
 #include "surfaces.h"
-#include "LinearMath/btTransformUtil.h"
 #include "solver.h"
 
 namespace realnoid::bullet {
@@ -23,29 +24,6 @@ std::array<double, 3> arr(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 btTransform transform(const std::array<double, 7>& a) {
     return btTransform(btQuaternion(a[3], a[4], a[5], a[6]), btVector3(a[0], a[1], a[2]));
 }
-
-// A degree of freedom that can be driven: a constraint of nothing but a motor, so that what it gave is known.
-struct Drive {
-    std::unique_ptr<btGeneric6DofSpring2Constraint> constraint;
-    int dof = 0;
-    // Whose stops are told in each step; else null.
-    btGeneric6DofSpring2Constraint* far = nullptr;
-};
-
-// A joint with a way along x. Bullet pushes the two sides perpendicular to it at the origins of their frames, which are apart by
-// the way: force against force makes a torque out of nothing. So the parent's frame goes along with the child's.
-struct Slide {
-    btGeneric6DofSpring2Constraint* constraint = nullptr;
-    btTransform in_parent, in_child;
-    double lower = 1, upper = -1;
-    void follow() const {
-        btGeneric6DofSpring2Constraint& c = *constraint;
-        const btVector3 child = (c.getRigidBodyB().getCenterOfMassTransform() * in_child).getOrigin();
-        const double way = (c.getRigidBodyA().getCenterOfMassTransform() * in_parent).invXform(child).x();
-        c.setFrames(in_parent * btTransform(btQuaternion::getIdentity(), btVector3(way, 0, 0)), in_child);
-        if (lower <= upper) c.setLimit(0, lower - way, upper - way);
-    }
-};
 
 struct Sleep {
     double after = -1;
@@ -66,7 +44,7 @@ struct World::Impl {
     btCollisionDispatcher dispatcher{&configuration};
     btDbvtBroadphase broadphase;
     Solver solver;
-    btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+    Dynamics world{&dispatcher, &broadphase, &solver, &configuration};
     // The world's side of joints; not among the bodies of the world.
     btRigidBody ground{btRigidBody::btRigidBodyConstructionInfo(0, nullptr, nullptr)};
     std::vector<std::unique_ptr<btRigidBody>> bodies;
@@ -76,6 +54,7 @@ struct World::Impl {
     std::vector<std::unique_ptr<btGeneric6DofSpring2Constraint>> joints;
     std::vector<Slide> slides;
     std::vector<Drive> drives;
+    std::vector<Pair> pairs;
     double h = 0;
 
     ~Impl();
@@ -87,12 +66,13 @@ struct World::Impl {
     void add_joint(const JointSpec& spec, btJointFeedback& feedback);
     void add_motor(const Spec& spec, const Motor& motor);
     std::unique_ptr<btGeneric6DofSpring2Constraint> constraint(const JointSpec& spec);
-    void drive(Drive& drive, const MotorInput& input);
+    void add_pair(const Spec& spec, const PairSpec& pair);
     void fall_asleep();
     void drift(double time);
 };
 
 World::Impl::~Impl() {
+    for (auto& p : pairs) world.removeConstraint(p.constraint.get());
     for (auto& d : drives) world.removeConstraint(d.constraint.get());
     for (auto& j : joints) world.removeConstraint(j.get());
     for (auto& b : bodies) world.removeRigidBody(b.get());
@@ -228,44 +208,18 @@ void World::Impl::add_motor(const Spec& spec, const Motor& motor) {
     drives.push_back(std::move(d));
 }
 
-// A window about the present angle, whose ends are stops if they are near; Bullet's sign is the opposite. Not by setLimit,
-// which wraps each end by itself.
-void limit(btGeneric6DofSpring2Constraint& c, int axis, const std::array<double, 2>& stop) {
-    constexpr double NEAR = 1;
-    btRotationalLimitMotor2& limit = *c.getRotationalLimitMotor(axis);
-    const bool none = stop[0] < -NEAR && stop[1] > NEAR;
-    c.calculateTransforms();
-    const double angle = c.getAngle(axis);
-    limit.m_loLimit = none ? 1 : angle - std::clamp(stop[1], -NEAR, NEAR);
-    limit.m_hiLimit = none ? -1 : angle - std::clamp(stop[0], -NEAR, NEAR);
-}
-
-// The torque goes to both bodies; the motor is a row of the solver.
-void World::Impl::drive(Drive& drive, const MotorInput& in) {
-    auto& c = *drive.constraint;
-    const int k = drive.dof;
-    if (drive.far && k >= 3) limit(*drive.far, k - 3, in.stop);
-    c.setEnabled(in.bound > 0);
-    if (in.bound > 0) {
-        c.enableMotor(k, true);
-        c.setTargetVelocity(k, -in.speed);
-        c.setMaxMotorForce(k, std::min(in.bound, 1e30));
-        c.setParam(BT_CONSTRAINT_CFM, in.cfm, k);
-    }
-    if (in.torque == 0) return;
-    c.calculateTransforms();
-    btRigidBody &a = c.getRigidBodyA(), &b = c.getRigidBodyB();
-    if (k >= 3) {
-        const btVector3 torque = c.getAxis(k - 3) * in.torque;
-        b.applyTorque(torque);
-        if (&a != &ground) a.applyTorque(-torque);
-        return;
-    }
-    // Along one line for both.
-    const btVector3 force = c.getCalculatedTransformA().getBasis().getColumn(k) * in.torque;
-    const btVector3 at = c.getCalculatedTransformB().getOrigin();
-    b.applyForce(force, at - b.getCenterOfMassPosition());
-    if (&a != &ground) a.applyForce(-force, at - a.getCenterOfMassPosition());
+// Its torque is booked with that of its joint.
+void World::Impl::add_pair(const Spec& spec, const PairSpec& pair) {
+    if (pair.joint >= spec.joints.size()) throw std::out_of_range("a pair is on a joint that is not there");
+    const JointSpec& joint = spec.joints[pair.joint];
+    Pair p{constraint(joint), transform(joint.frame_in_child)};
+    for (int i = 0; i < 6; i++) p.constraint->setLimit(i, 1, -1);
+    p.constraint->setParam(BT_CONSTRAINT_STOP_ERP, pair.erp, 3);
+    p.constraint->setUserConstraintId(solver.remember());
+    p.constraint->setJointFeedback(&feedback[pair.joint]);
+    p.constraint->setEnabled(false);
+    world.addConstraint(p.constraint.get(), false);
+    pairs.push_back(std::move(p));
 }
 
 // B-9: each body has its own delay, Bullet one for all of a process. A body is told that its time is over.
@@ -279,13 +233,6 @@ void World::Impl::fall_asleep() {
         s.slow = slow ? s.slow + h : 0;
         b.setDeactivationTime(s.slow > s.after ? 2 * gDeactivationTime : 0);
     }
-}
-
-// Where a body will be.
-btTransform ahead(const btRigidBody& b, double time) {
-    btTransform at;
-    btTransformUtil::integrateTransform(b.getWorldTransform(), b.getLinearVelocity(), b.getAngularVelocity(), time, at);
-    return at;
 }
 
 // Bullet moves a body by the velocity that it got from forces at the place where it was. That is of second order if the place is
@@ -303,15 +250,17 @@ World::World(const Spec& spec) : impl_(std::make_unique<Impl>()) {
     w.feedback.resize(spec.joints.size());
     for (std::size_t i = 0; i < spec.joints.size(); i++) w.add_joint(spec.joints[i], w.feedback[i]);
     for (const Motor& motor : spec.motors) w.add_motor(spec, motor);
+    for (const PairSpec& pair : spec.pairs) w.add_pair(spec, pair);
     alive++;
 }
 
 World::~World() { alive--; }
 
-void World::step(const StepInput& in, rust::Slice<const MotorInput> motors, rust::Slice<double> efforts,
-                 rust::Slice<Moving> bodies) {
+void World::step(const StepInput& in, rust::Slice<const MotorInput> motors, rust::Slice<const PairInput> pairs,
+                 rust::Slice<double> efforts, rust::Slice<Moving> bodies) {
     Impl& w = *impl_;
-    if (motors.size() != w.drives.size() || efforts.size() != w.drives.size() || bodies.size() != w.bodies.size())
+    if (motors.size() != w.drives.size() || efforts.size() != w.drives.size() || bodies.size() != w.bodies.size() ||
+        pairs.size() != w.pairs.size())
         throw std::out_of_range("a step of another world");
     const btVector3 gravity = vec(in.gravity);
     w.drift(0.5 * (in.h - w.h));
@@ -325,7 +274,8 @@ void World::step(const StepInput& in, rust::Slice<const MotorInput> motors, rust
         w.world.setGravity(gravity);
     }
     for (const Slide& slide : w.slides) slide.follow();
-    for (std::size_t i = 0; i < w.drives.size(); i++) w.drive(w.drives[i], motors[i]);
+    for (std::size_t i = 0; i < w.drives.size(); i++) w.drives[i].set(motors[i], w.ground);
+    for (std::size_t i = 0; i < w.pairs.size(); i++) w.pairs[i].set(pairs[i]);
     w.world.stepSimulation(in.h, 0);
     w.fall_asleep();
     for (std::size_t i = 0; i < w.drives.size(); i++) {

@@ -10,9 +10,10 @@
 //! | universal | 3 shifts; a point on the child's second axis stays in the plane across the first | x of (parent, child), z of (child, parent) |
 //! | spherical | 3 shifts | x of (child, parent), turned along the gradient of the angle in every step |
 //!
-//! Each axis has one joint for its motor, and one for its stops if it has hard ones.
+//! Hinges and slides have motor and stops in the joint that holds them; the other axes have one joint for their motor, and one for their stops if they are hard.
 
 use super::convert::{facing, frame};
+use super::pairs::Pair;
 use super::parts::{Parts, is_carried, is_soft};
 use super::sim::{Sim, hard};
 use crate::dynamics::{Kinematics, joint_transform, universal_axis};
@@ -27,10 +28,15 @@ use rapier3d_f64::prelude::{GenericJoint, ImpulseJointHandle, JointAxesMask, Joi
 /// A stop further away than this is out of reach of a step, rad: rapier measures angles up to half a turn.
 const REACH: f64 = 1.0;
 
+/// A stop further away than this, and than so many substeps at the present speed, is not looked at, rad or m.
+const MARGIN: f64 = 0.05;
+const AHEAD: f64 = 4.0;
+
 /// All axes.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     rows: Vec<Option<Row>>,
+    pairs: Vec<Pair>,
 }
 
 /// One axis in rapier.
@@ -63,7 +69,7 @@ enum Along {
 }
 
 /// The next body that rapier has, towards the world, and the frame of a body's joint on it; `through`: behind the joint.
-fn seat(m: &Model, q: &[f64], body: usize, through: bool) -> (usize, Pose) {
+pub(super) fn seat(m: &Model, q: &[f64], body: usize, through: bool) -> (usize, Pose) {
     let b = &m.bodies[body];
     let own = if through { joint_transform(b, q) } else { (b.tree_r, b.tree_p) };
     let (mut parent, mut at) = (b.parent, frame(&own.0, own.1));
@@ -100,7 +106,7 @@ fn hold_together(m: &Model, sim: &mut Sim, parts: &Parts, q: &[f64]) -> Vec<Opti
 }
 
 /// A joint of two bodies of the model, each with its frame. Whether the two touch is not its business.
-fn insert(
+pub(super) fn insert(
     sim: &mut Sim,
     parts: &Parts,
     (first, frame1): (usize, Pose),
@@ -123,7 +129,8 @@ impl Rows {
     pub fn new(m: &Model, sim: &mut Sim, parts: &Parts, q: &[f64]) -> Self {
         let holds = hold_together(m, sim, parts, q);
         let rows = (0..m.axes.len()).map(|axis| Row::new(m, sim, parts, (q, axis, &holds))).collect();
-        Self { rows }
+        let pairs = (0..m.eulers.len()).filter_map(|group| Pair::new(m, sim, parts, (q, group))).collect();
+        Self { rows, pairs }
     }
 
     /// Sets the motors and stops of a step of `h` seconds at these poses; adds the constant torques to `loads`, per body.
@@ -143,19 +150,41 @@ impl Rows {
             let piece = laws.motor(i, h);
             row.set_motor(sim, g, &piece);
             match laws.stop(i) {
+                Some(stop) if !is_near(stop, state.axis(m, i).1, h) => row.lift_stop(sim),
                 Some(stop) => row.set_stop(sim, k, g, (state.axis(m, i).0, stop)),
                 None => row.lift_stop(sim),
             }
             row.push(k, g * piece.torque, loads);
         }
-    }
-
-    /// Per axis: what its motor gave in the last substep, which lasted `h` seconds, N·m or N.
-    pub fn read(&self, sim: &Sim, h: f64, out: &mut [f64]) {
-        for (out, row) in out.iter_mut().zip(&self.rows) {
-            *out = row.as_ref().map_or(0.0, |row| row.torque(sim, h));
+        for pair in &self.pairs {
+            pair.set(sim, laws, k, state);
         }
     }
+
+    /// Per axis: what its motor and its stops gave in the last substep, which lasted `h` seconds and began with `state`, N·m or N.
+    pub fn read(&self, sim: &Sim, (h, state): (f64, &State), motors: &mut [f64], stops: &mut [f64]) {
+        for ((motor, stop), row) in motors.iter_mut().zip(stops.iter_mut()).zip(&self.rows) {
+            (*motor, *stop) = row.as_ref().map_or((0.0, 0.0), |row| (row.torque(sim, h), row.reaction(sim, h)));
+        }
+        for pair in &self.pairs {
+            pair.read(sim, h, state, stops);
+        }
+    }
+}
+
+/// May an axis come to a stop within a few substeps of `h` seconds?
+fn is_near([low, high]: [f64; 2], v: f64, h: f64) -> bool {
+    low.max(-high) > -(MARGIN + AHEAD * h * v.abs())
+}
+
+/// Sets the range in which a body may turn about `turned`'s x from where it is: the child is rapier's first body.
+pub(super) fn watch(joint: &mut GenericJoint, relative: &M3<f64>, turned: &M3<f64>, [from, to]: [f64; 2]) {
+    let range = |x: f64| x.clamp(-REACH, REACH);
+    joint.limit_axes = JointAxesMask::ANG_X;
+    joint.local_frame1.rotation = frame(turned, V3::default()).rotation;
+    joint.local_frame2.rotation = frame(&relative.mm(turned), V3::default()).rotation;
+    let own = &mut joint.limits[JointAxis::AngX as usize];
+    (own.min, own.max) = (range(-to), range(-from));
 }
 
 /// What acts on a body, about its origin, along the world's axes.
@@ -189,7 +218,7 @@ impl Row {
         let (first, second) = if swapped { (second, first) } else { (first, second) };
         let joint = |sim: &mut Sim| insert(sim, parts, first, second, JointAxesMask::empty());
         // A hinge turns about the same axis as its joint: one joint for all. Its stops are solved with its locks then.
-        let hinge = holds[child].filter(|_| b.joint == JointType::Revolute);
+        let hinge = holds[child].filter(|_| matches!(b.joint, JointType::Revolute | JointType::Prismatic));
         let motor = hinge.or_else(|| joint(sim))?;
         let stop = if m.axes[axis].has_hard_stops() { hinge.or_else(|| joint(sim)) } else { None };
         Some(Self { along, axis: row_axis, swapped, parent, child, motor, stop, length: 1.0 })
@@ -231,28 +260,31 @@ impl Row {
     /// The range about the present position `q` that rapier watches, in its measure.
     fn set_stop(&self, sim: &mut Sim, k: &Kinematics, g: V3<f64>, (q, [low, high]): (f64, [f64; 2])) {
         let Some(joint) = self.stop.and_then(|stop| sim.joints.get_mut(stop, false)) else { return };
-        joint.data.limit_axes = JointAxesMask::from(self.axis);
-        let reach = if let Along::Slide = self.along { f64::INFINITY } else { REACH };
-        let (mut from, mut to) = (low.max(-reach).min(reach), high.min(reach).max(-reach));
+        if self.stop != Some(self.motor) {
+            // It knows that the bodies turn about the joint, not each about its centre.
+            joint.data.locked_axes = JointAxesMask::LIN_AXES;
+        }
         if let Along::Angle { .. } = self.along {
             let turned = facing(g * (1.0 / self.length));
-            let child = self.child;
-            joint.data.local_frame1 = frame(&turned, V3::default());
-            let relative = k.r[self.parent].tmm(&k.r[child]);
-            joint.data.local_frame2 = frame(&relative.mm(&turned), V3::default());
-            (from, to) = (from / self.length, to / self.length);
-        } else {
-            (from, to) = (q + from, q + to);
+            let relative = k.r[self.parent].tmm(&k.r[self.child]);
+            watch(&mut joint.data, &relative, &turned, [low / self.length, high / self.length]);
+            return;
         }
+        joint.data.limit_axes = JointAxesMask::from(self.axis);
+        let reach = if let Along::Slide = self.along { f64::INFINITY } else { REACH };
+        let (from, to) = (q + low.max(-reach).min(reach), q + high.min(reach).max(-reach));
         let limits = if self.swapped { [-to, -from] } else { [from, to] };
         let own = &mut joint.data.limits[self.axis as usize];
         (own.min, own.max) = (limits[0].max(f64::MIN), limits[1].min(f64::MAX));
     }
 
-    /// No stop in this step: of H at the pole, where it is no axis of its own.
+    /// No stop in this step: none is near, or it is that of H at the pole, where it is no axis of its own.
     fn lift_stop(&self, sim: &mut Sim) {
         if let Some(joint) = self.stop.and_then(|stop| sim.joints.get_mut(stop, false)) {
             joint.data.limit_axes = JointAxesMask::empty();
+            if self.stop != Some(self.motor) {
+                joint.data.locked_axes = JointAxesMask::empty();
+            }
         }
     }
 
@@ -278,5 +310,14 @@ impl Row {
         }
         // rapier's impulse acts on its second body against the axis.
         -self.sign() * joint.data.motors[self.axis as usize].impulse / (h * self.length)
+    }
+
+    /// Of the stops.
+    fn reaction(&self, sim: &Sim, h: f64) -> f64 {
+        let Some(joint) = self.stop.and_then(|stop| sim.joints.get(stop)) else { return 0.0 };
+        if joint.data.limit_axes.is_empty() {
+            return 0.0;
+        }
+        -self.sign() * joint.data.limits[self.axis as usize].impulse / (h * self.length)
     }
 }

@@ -1,9 +1,9 @@
 //! rapier: a rigid body for each link, joints as rows of impulses, solved by small substeps (rapier3d-f64).
 //!
 //! A step of h seconds is one of rapier's with W-6 as its number of substeps (`num_solver_iterations`): each makes h/W-6 seconds
-//! with one sweep over all rows. With inertia of rotors, or joints that break, it is W-6 steps of one substep each: then what an
-//! axis gives, and what a contact carries, is known for all of the step and not only for its last substep. That finds the
-//! contacts anew in each of them, and takes accordingly longer.
+//! with some sweeps over all rows. With anything that acts on an axis, or joints that break, it is W-6 steps of one substep each: then
+//! what an axis gives, and what a contact carries, is known for all of the step and not only for its last substep, and laws
+//! and gradients are those of each substep. That finds the contacts anew in each of them, and takes accordingly longer.
 //!
 //! This room alone names rapier and its vectors.
 
@@ -11,6 +11,7 @@ mod contacts;
 mod convert;
 mod honour;
 mod joints;
+mod pairs;
 mod parts;
 mod shapes;
 mod sim;
@@ -21,7 +22,7 @@ use super::sleep::same;
 use super::{Engine, EngineKind, Integrator, State, StepReport, StepSettings};
 use crate::dynamics::{Kinematics, kinematics};
 use crate::math::V3;
-use crate::model::Model;
+use crate::model::{Effects, Model};
 use crate::solver::{AxisCommand, Books, ContactPoint};
 pub use honour::{shape_name, shortfalls};
 
@@ -35,6 +36,8 @@ use sim::Sim;
 pub struct Rapier {
     state: State,
     before: State,
+    /// At the start of a part of it.
+    start: State,
     /// Where the bodies are.
     k: Kinematics,
     /// Where they were at the start of the last part of a step.
@@ -46,8 +49,9 @@ pub struct Rapier {
     contacts: Contacts,
     /// Per body: what acts on it in a step.
     loads: Vec<Load>,
-    /// Per axis: what its motor gave.
+    /// Per axis: what its motor and its stops gave.
     motors: Vec<f64>,
+    stops: Vec<f64>,
     widest: Gap,
     /// What the bodies came to rest with.
     last: (Vec<AxisCommand>, [f64; 3]),
@@ -69,6 +73,7 @@ impl Rapier {
         let (sim, parts, rows) = build(m, &mut state, &mut k);
         Self {
             before: state.clone(),
+            start: state.clone(),
             state,
             from: k.clone(),
             k,
@@ -79,6 +84,7 @@ impl Rapier {
             contacts: Contacts::new(m),
             loads: vec![Load::default(); m.bodies.len()],
             motors: vec![0.0; m.axes.len()],
+            stops: vec![0.0; m.axes.len()],
             widest: Gap::default(),
             last: (vec![AxisCommand::IDLE; m.axes.len()], [0.0; 3]),
         }
@@ -88,6 +94,7 @@ impl Rapier {
     fn put(&mut self, m: &Model, state: &State) {
         self.state.clone_from(state);
         self.before.clone_from(state);
+        self.start.clone_from(state);
         (self.sim, self.parts, self.rows) = build(m, &mut self.state, &mut self.k);
         let worst = self.contacts.worst;
         self.contacts = Contacts { worst, ..Contacts::new(m) };
@@ -115,11 +122,13 @@ impl Rapier {
         self.from.copy_from(&self.k);
         self.parts.read(m, &self.sim, &self.state, &mut self.k);
         self.laws.books.work.contacts += self.contacts.taken(m, [&self.from, &self.k], part.h);
+        self.start.copy_from(&self.state);
         let gap = read_state(m, &self.k, &mut self.state);
         let finite = sound && self.state.finite();
         if finite {
             self.widest = self.widest.max(gap);
-            self.rows.read(&self.sim, substep, &mut self.motors);
+            self.rows.read(&self.sim, (substep, &self.start), &mut self.motors, &mut self.stops);
+            self.laws.book_stops(m, part.h, &self.state, &self.stops);
             self.laws.finish(m, (part.h, part.whole), &self.state, &self.motors);
         }
         (finite, at_pole)
@@ -180,6 +189,12 @@ fn build(m: &Model, state: &mut State, k: &mut Kinematics) -> (Sim, Parts, Rows)
     (sim, parts, rows)
 }
 
+/// Must forces be known for all of the step? Then each of its parts is one substep.
+fn is_fine(m: &Model, effects: Effects) -> bool {
+    let laws = effects.drives || effects.friction || effects.damping || effects.limits || effects.rotor_inertia;
+    effects.breaking || (laws && !m.axes.is_empty())
+}
+
 impl Engine for Rapier {
     fn kind(&self) -> EngineKind {
         EngineKind::Rapier
@@ -193,8 +208,7 @@ impl Engine for Rapier {
         self.before.copy_from(&self.state);
         self.laws.open_books();
         self.contacts.open();
-        let fine = s.effects.rotor_inertia || s.effects.breaking;
-        let parts = if fine { s.passes } else { 1 };
+        let parts = if is_fine(m, s.effects) { s.passes } else { 1 };
         let part = Part { h: s.h / f64::from(parts), whole: s.h, substeps: s.passes / parts };
         for _ in 0..parts {
             let (finite, at_pole) = self.part(m, commands, s, part);
