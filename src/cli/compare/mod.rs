@@ -77,8 +77,13 @@ impl Contest {
         let contender =
             |kind: EngineKind| Contender::new(kind.name(), &world, &script, Settings { engine: kind, ..settings });
         let mut others = vec![half];
-        for made in kinds.into_iter().map(contender) {
-            match made {
+        for kind in kinds {
+            if args.engine.is_empty() && !kind.capabilities().joints && !model.axes.is_empty() {
+                let name = kind.name();
+                warnings.push(format!("left out: {name}, which has no joints; --engine {name} shows its free bodies"));
+                continue;
+            }
+            match contender(kind) {
                 Ok(run) => others.push(run),
                 Err(reason) if args.engine.is_empty() => warnings.push(format!("left out: {reason}")),
                 Err(reason) => return Err((1, reason)),
