@@ -3,6 +3,7 @@
 use super::load::{Loaded, Source};
 use super::scene::{Assembly, Fault, Scene, Spare, assemble, inside};
 use crate::description::{Severity, render};
+use crate::engine::unused_integrator;
 use crate::ros::parameters::Values;
 use crate::ros::{self, Environment, Robot, RosArgs};
 use std::ffi::OsString;
@@ -38,7 +39,9 @@ pub fn run(source: Source, args: RosArgs) -> ExitCode {
     };
     let loaded = &assembly.first;
     let inside = inside(&assembly.model, &assembly.initial);
-    warnings.iter().chain(&assembly.warnings).chain(&inside).for_each(|w| eprintln!("warning: {w}"));
+    let settings = values.pace().settings;
+    let unused = unused_integrator(settings.engine, settings.integrator).map(|s| s.of(settings.engine));
+    warnings.iter().chain(&assembly.warnings).chain(&inside).chain(&unused).for_each(|w| eprintln!("warning: {w}"));
     print_findings(loaded);
     let robot = Robot {
         source: loaded.description.file.to_string(),

@@ -10,7 +10,7 @@ use super::scene::{
 };
 use super::script::Script;
 use crate::description::Severity;
-use crate::engine::State;
+use crate::engine::{State, unused_integrator};
 use crate::math::{Pose, Vec3};
 use crate::model::{Base, Model};
 use crate::record::{ContactWriter, Format, Recorder, Sample};
@@ -128,6 +128,7 @@ impl Start {
         warnings.extend(outside(world.model(), world.state()).map(|(_, said)| said + ": its stop pushes it back"));
         warnings.extend(inside(world.model(), world.state()));
         warnings.extend(beyond(&world));
+        warnings.extend(unused_integrator(settings.engine, settings.integrator).map(|s| s.of(settings.engine)));
         if intervals == 0 && args.duration > 0.0 {
             warnings.push("the duration is less than half a control interval: no step is made".into());
         }

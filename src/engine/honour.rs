@@ -1,6 +1,6 @@
 //! What an engine cannot honour is told, never silently dropped (E-2).
 
-use super::EngineKind;
+use super::{EngineKind, Integrator};
 use crate::description::{Description, Finding, Position, Severity};
 use crate::model::{LinkFrame, LinkInfo, Model};
 use crate::shape::ContactForm;
@@ -14,6 +14,13 @@ pub struct Shortfall {
     pub item: String,
     /// What happens instead.
     pub instead: String,
+}
+
+impl Shortfall {
+    /// What is said of an engine: `the engine bullet does not honour …`.
+    pub fn of(&self, kind: EngineKind) -> String {
+        format!("the engine {} does not honour {self}", kind.name())
+    }
 }
 
 impl std::fmt::Display for Shortfall {
@@ -75,6 +82,13 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
 /// What an engine calls the shape that it makes of a form, where it is one of its own: rbx collides forms as they are.
 pub fn shape_name(kind: EngineKind, form: &ContactForm) -> Option<String> {
     (kind == EngineKind::Rapier).then(|| super::rapier::shape_name(form))
+}
+
+/// An integrator that was chosen, and that an engine with one of its own does not use.
+pub fn unused_integrator(kind: EngineKind, integrator: Integrator) -> Option<Shortfall> {
+    let unused = !kind.capabilities().integrators && integrator != Integrator::default();
+    let item = format!("integrator {}", integrator.name());
+    unused.then(|| Shortfall { element: "the world".into(), item, instead: "it has its own".into() })
 }
 
 /// The first of each kind (the same item, the same instead), and how many others there are.

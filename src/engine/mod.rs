@@ -26,7 +26,7 @@ mod sleep;
 
 pub use apart::come_apart;
 pub use breaking::{BreakWatch, Overload};
-pub use honour::{Shortfall, by_kind, not_honoured, shape_name, shortfalls};
+pub use honour::{Shortfall, by_kind, not_honoured, shape_name, shortfalls, unused_integrator};
 pub use kind::{Capabilities, EngineKind};
 pub use rapier::Rapier;
 pub use rbx::{Integrator, Rbx, State, StepReport, StepSettings};

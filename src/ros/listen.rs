@@ -7,7 +7,7 @@ use super::log::Logger;
 use super::messages::{Float64MultiArray, JointState};
 use super::parameters::{Change, ParameterServers, Values};
 use super::topics::{Topics, command_qos};
-use crate::engine::{EngineKind, State, shortfalls};
+use crate::engine::{EngineKind, Integrator, State, shortfalls, unused_integrator};
 use crate::model::Model;
 use crate::world::AxisCommand;
 use futures::StreamExt;
@@ -95,7 +95,7 @@ struct Inbox<'a> {
     end: RefCell<CommandEnd>,
     live: &'a Live,
     log: &'a Logger,
-    engine: Cell<EngineKind>,
+    engine: Cell<(EngineKind, Integrator)>,
 }
 
 impl Listener {
@@ -110,7 +110,7 @@ impl Listener {
             end: RefCell::new(desk.end),
             live: &desk.live,
             log: &self.log,
-            engine: Cell::new(desk.values.pace().settings.engine),
+            engine: Cell::new(chosen(&desk.values)),
         };
         let values = RefCell::new(desk.values);
         let check = |values: &Values| inbox.check_parameters(values);
@@ -182,8 +182,8 @@ impl Inbox<'_> {
 
     /// Another engine is made once on trial: what it cannot take is said in the answer. The control loop could only stay as it is.
     fn check_parameters(&self, values: &Values) -> Result<(), String> {
-        let engine = values.pace().settings.engine;
-        if engine == self.engine.get() {
+        let (engine, _) = chosen(values);
+        if engine == self.engine.get().0 {
             return Ok(());
         }
         let made = engine.build(self.model, &State::initial(self.model));
@@ -192,14 +192,17 @@ impl Inbox<'_> {
 
     fn take_parameters(&self, values: &Values) {
         self.rules.borrow_mut().allow_mode_switch = values.allow_mode_switch();
-        let pace = values.pace();
-        let engine = pace.settings.engine;
-        if self.engine.replace(engine) != engine {
-            for shortfall in shortfalls(engine, self.model) {
-                self.log.warn(format!("the engine {} does not honour {shortfall}", engine.name()));
-            }
-        }
-        self.end.borrow_mut().set_pace(pace);
+        let (engine, integrator) = chosen(values);
+        let before = self.engine.replace((engine, integrator));
+        let of_robot = if before.0 == engine { vec![] } else { shortfalls(engine, self.model) };
+        let of_settings = unused_integrator(engine, integrator).filter(|_| before != (engine, integrator));
+        of_robot.iter().chain(&of_settings).for_each(|s| self.log.warn(s.of(engine)));
+        self.end.borrow_mut().set_pace(values.pace());
         self.live.take(values);
     }
+}
+
+fn chosen(values: &Values) -> (EngineKind, Integrator) {
+    let settings = values.pace().settings;
+    (settings.engine, settings.integrator)
 }

@@ -127,7 +127,7 @@ def test_what_an_engine_does_not_honour_is_told_at_the_switch(start, coupled):
     bench = start(urdf=coupled)
     client = bench.probe.parameters()
     assert not bench.logged("does not honour")
-    for engine in [e for e in ENGINES if e["built"] and not e["capabilities"]["couplings"]]:
+    for engine in [e for e in ENGINES if e["built"] and e["capabilities"]["joints"] and not e["capabilities"]["couplings"]]:
         name = engine["name"]
         switch(bench, client, name)
         told = f"the engine {name} does not honour <mimic> of joint 'ankle'"
@@ -137,6 +137,19 @@ def test_what_an_engine_does_not_honour_is_told_at_the_switch(start, coupled):
         switch(bench, client, "rbx")
         assert len(bench.logged(told)) == 1
     assert not bench.logged("the engine rbx does not honour")
+
+
+def test_an_integrator_that_an_engine_does_not_use_is_told(start, tmp_path):
+    bench = start(urdf=ARM)
+    client = bench.probe.parameters()
+    told = "the engine rapier does not honour integrator rk4 of the world: it has its own"
+    bench.probe.set(client, integrator="rk4")
+    assert not bench.logged("does not honour")
+    switch(bench, client, "rapier")
+    wait_until(lambda: bench.logged(told), what=told)
+    run = [BINARY, "simulate", ARM, "--duration", "0.01", "--engine", "rapier"]
+    assert told in subprocess.check_output([*run, "--integrator", "rk4"], text=True)
+    assert "does not honour" not in subprocess.check_output(run, text=True)
 
 
 def test_inspect_tells_what_an_engine_does_not_honour(coupled):

@@ -11,7 +11,7 @@ use super::args::CompareArgs;
 use super::outcome::{Progress, counted};
 use super::scene::engine;
 use super::simulate::{Start, catch_signals, stopped};
-use crate::engine::{Shortfall, shortfalls};
+use crate::engine::{Shortfall, shortfalls, unused_integrator};
 use crate::model::Model;
 use crate::world::{EngineKind, Settings, World};
 use contender::{Contender, floating_bodies};
@@ -166,10 +166,7 @@ impl Contest {
     /// What of the scene an engine does not honour.
     fn shortfalls(&self, c: &Contender) -> Vec<Shortfall> {
         let mut found = shortfalls(c.engine, &self.model);
-        if !c.engine.capabilities().integrators {
-            let item = format!("integrator {}", self.settings.integrator.name());
-            found.push(Shortfall { element: "the world".into(), item, instead: "it has its own".into() });
-        }
+        found.extend(unused_integrator(c.engine, self.settings.integrator));
         found
     }
 }
