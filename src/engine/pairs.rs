@@ -13,6 +13,7 @@ use crate::model::{AxisSlot, Model};
 /// |cos P| below which sweeps do not tell H and B apart: each takes |cos P|² of what is left.
 const NEAR: f64 = 0.5;
 /// |cos P| below which gradients must be fresh: at 7 rad/s they turn by 3 % in 1 ms at 0.2, and by 1/cos P more.
+#[cfg(feature = "bullet")]
 const STEEP: f64 = 0.2;
 
 /// A group whose H and B have hard stops.
@@ -62,6 +63,7 @@ impl Pair {
 }
 
 /// Is a group so near to its pole that its gradients do not last for a step?
+#[cfg(feature = "bullet")]
 pub(super) fn is_steep(state: &State) -> bool {
     state.angles.iter().any(|hpb| sin_cos(hpb[1]).1.abs() < STEEP)
 }
