@@ -4,9 +4,9 @@
 //! an impulse between the torques at the riser's ends, found together with those of the contacts.
 
 use super::axis_set::AxisSet;
-use super::couplings::Seat;
 use super::inputs::Input;
 use super::rows::{Kind, Rows};
+use super::seat::Seat;
 use crate::dynamics::{Push, Response, Workspace};
 use crate::model::Model;
 

@@ -6,8 +6,9 @@ use super::axis_set::{AxisSet, StateRef, StepStart};
 use super::contacts::{Contacts, Pass};
 use super::lifting::Reached;
 use super::rows::{Kind, Rows};
+use super::seat::Seat;
 use crate::dynamics::{Push, Response, Workspace};
-use crate::model::{AxisSlot, Coupling, EulerRates, Model};
+use crate::model::{AxisSlot, Coupling, Model};
 
 /// Share of a follower's deviation that one step takes back, by a speed. The rows keep the velocities together to rounding, so it
 /// has only rounding, the curvature of a 3DOF group's angles and what an unsettled step has left to take back.
@@ -69,14 +70,6 @@ pub struct Stage {
     pub first: bool,
 }
 
-/// The joint of an axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Seat {
-    body: usize,
-    /// Which of the joint's velocities; an angle of a group uses all.
-    index: usize,
-}
-
 /// Position, velocity and acceleration of an axis.
 #[derive(Clone, Copy)]
 struct Motion {
@@ -101,7 +94,7 @@ impl Couplings {
         let mut rows = Rows::new(response.layout.width());
         for pair in &pairs {
             let mut ids = vec![];
-            response.layout.join(pair.follower.body, pair.leader.body, &mut ids);
+            response.layout.join(pair.follower.body(), pair.leader.body(), &mut ids);
             rows.add(Kind::EQUALITY, 1, &ids);
         }
         Some(Box::new(Self { response, rows, pairs, reached: vec![], h: 0.0, contacts }))
@@ -183,31 +176,6 @@ fn deviation(pair: &Pair, follower: &Motion, leader: &Motion) -> f64 {
     let error = follower.q - pair.coupling.position(leader.q);
     let size = follower.q.abs() + (pair.coupling.ratio * leader.q).abs() + pair.coupling.offset.abs();
     if error.abs() <= STILL * size { 0.0 } else { error }
-}
-
-impl Seat {
-    /// `None` if the joint has come apart.
-    pub fn of(m: &Model, axis: usize) -> Option<Self> {
-        let body = m.carrier(axis)?;
-        let index = if let AxisSlot::Scalar { v, .. } = m.axes[axis].slot { v - m.bodies[body].v } else { 0 };
-        Some(Self { body, index })
-    }
-
-    pub fn body(&self) -> usize {
-        self.body
-    }
-
-    /// The force that is `factor` along this joint's axis in a slot.
-    pub fn push(&self, slot: &AxisSlot, rates: &[EulerRates], factor: f64) -> Push {
-        let mut push = Push { body: self.body, ..Push::default() };
-        if let AxisSlot::Euler { group, angle } = slot {
-            let g = rates[*group].gradient[*angle] * factor;
-            push.own[..3].copy_from_slice(&[g.x, g.y, g.z]);
-        } else {
-            push.own[self.index] = factor;
-        }
-        push
-    }
 }
 
 impl AxisSet {
@@ -408,10 +376,5 @@ impl AxisSet {
         let speeds = f.v.abs() + h * f.a.abs() + c.ratio.abs() * (l.v.abs() + h * l.a.abs());
         let positions = (f.q.abs() + (c.ratio * l.q).abs() + c.offset.abs()) / h;
         pair.slack = AGREE * speeds + ROUNDING * positions;
-    }
-
-    /// The force that is `factor` along an axis.
-    pub(super) fn push_of(&self, m: &Model, axis: usize, seat: Seat, factor: f64) -> Push {
-        seat.push(&m.axes[axis].slot, &self.rates, factor)
     }
 }

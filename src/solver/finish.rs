@@ -6,7 +6,7 @@
 //! the velocities plus `−u_t·e / |x_t|`. Discs at their rim follow the normal impulse likewise.
 
 use super::dense::{Cholesky, Lu, dot};
-use super::rows::{Block, CHUNK, FINISH_ROWS, Inner, Kind, NEARLY, Rows};
+use super::rows::{FINISH_ROWS, Inner, Kind, NEARLY, Rows};
 
 /// Linearisations in one finish of many rows.
 const TRIES: usize = 3;
@@ -237,74 +237,6 @@ impl Rows {
             *residual = now;
         }
         less
-    }
-
-    /// `Y Yᵀ + R`.
-    fn fill(&self, a: &mut [f64]) {
-        let n = self.rows.len();
-        for (i, b) in self.blocks.iter().enumerate() {
-            for c in &self.blocks[..=i] {
-                for k in 0..b.rows {
-                    a[(b.first + k) * n + c.first..][..c.rows].fill(0.0);
-                }
-                if b.is_off() || c.is_off() {
-                    continue;
-                }
-                self.couple_blocks(b, c, a);
-            }
-        }
-        for i in 0..n {
-            a[i * n + i] += self.rows[i].softness;
-            for k in 0..i {
-                a[k * n + i] = a[i * n + k];
-            }
-        }
-    }
-
-    fn couple_blocks(&self, b: &Block, c: &Block, a: &mut [f64]) {
-        match (b.rows, c.rows) {
-            (3, 3) => self.couple::<3, 3>(b, c, a),
-            (3, 1) => self.couple::<3, 1>(b, c, a),
-            (1, 3) => self.couple::<1, 3>(b, c, a),
-            (1, 1) => self.couple::<1, 1>(b, c, a),
-            _ => {
-                for p in 0..b.rows {
-                    for q in 0..c.rows {
-                        a[(b.first + p) * self.rows.len() + c.first + q] = self.between((b, p), (c, q));
-                    }
-                }
-            }
-        }
-    }
-
-    /// Two blocks of P and Q rows.
-    #[inline(always)]
-    fn couple<const P: usize, const Q: usize>(&self, b: &Block, c: &Block, a: &mut [f64]) {
-        let n = self.rows.len();
-        let (ids, others) = (&self.ids[b.ids.clone()], &self.ids[c.ids.clone()]);
-        let y: [&[[f64; CHUNK]]; P] = std::array::from_fn(|p| self.numbers(b, p).as_chunks().0);
-        let z: [&[[f64; CHUNK]]; Q] = std::array::from_fn(|q| self.numbers(c, q).as_chunks().0);
-        let mut sums = [[[0.0; CHUNK]; Q]; P];
-        let (mut i, mut k) = (0, 0);
-        while i < ids.len() && k < others.len() {
-            match ids[i].cmp(&others[k]) {
-                std::cmp::Ordering::Less => i += 1,
-                std::cmp::Ordering::Greater => k += 1,
-                std::cmp::Ordering::Equal => {
-                    for p in 0..P {
-                        for q in 0..Q {
-                            (0..CHUNK).for_each(|j| sums[p][q][j] += y[p][i][j] * z[q][k][j]);
-                        }
-                    }
-                    (i, k) = (i + 1, k + 1);
-                }
-            }
-        }
-        for (p, sums) in sums.iter().enumerate() {
-            for (q, s) in sums.iter().enumerate() {
-                a[(b.first + p) * n + c.first + q] = (s[0] + s[1]) + (s[2] + s[3]);
-            }
-        }
     }
 
     /// One step of Newton's method, from the impulses and the w that are there. It solves for impulses, not for their changes: what

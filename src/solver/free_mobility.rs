@@ -1,6 +1,6 @@
 //! How single axes answer to a torque while all axes are free: what engines that do not solve the laws need to know.
 
-use super::couplings::Seat;
+use super::seat::Seat;
 use crate::dynamics::{BallIn, CHUNK, DofIn, Push, Response, Workspace, aba_hybrid};
 use crate::model::{AxisSlot, EulerRates, Model};
 

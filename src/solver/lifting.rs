@@ -2,10 +2,11 @@
 
 use super::axis_set::AxisSet;
 use super::contacts::{Pass, end_velocities};
-use super::couplings::{AIM, Couplings, Seat};
+use super::couplings::{AIM, Couplings};
 use super::law::{LOWER, UPPER, WALL_LEFT, WALL_RIGHT};
 use super::lifts::{Lift, LiftKind};
 use super::rows::Kind;
+use super::seat::Seat;
 use crate::dynamics::{Push, Workspace};
 use crate::model::{AxisSlot, Model};
 

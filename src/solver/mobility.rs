@@ -1,7 +1,7 @@
 //! How an axis answers to a torque with the whole robot free to move, its base too.
 
 use super::AxisSet;
-use super::couplings::Seat;
+use super::seat::Seat;
 use crate::dynamics::{CHUNK, Push, Response, Workspace};
 use crate::model::Model;
 

@@ -346,24 +346,6 @@ impl Rows {
         &self.values[b.values + n * length..b.values + (n + 1) * length]
     }
 
-    /// `y_a·y_b` of two rows, each given by its block and its number in it.
-    pub(super) fn between(&self, (a, n): (&Block, usize), (b, m): (&Block, usize)) -> f64 {
-        let (x, y) = (self.numbers(a, n).chunks_exact(CHUNK), self.numbers(b, m).chunks_exact(CHUNK));
-        let (mut x, mut y) = (self.ids[a.ids.clone()].iter().zip(x), self.ids[b.ids.clone()].iter().zip(y));
-        let (mut i, mut k, mut sum) = (x.next(), y.next(), 0.0);
-        while let (Some((p, own)), Some((q, other))) = (i, k) {
-            match p.cmp(q) {
-                std::cmp::Ordering::Less => i = x.next(),
-                std::cmp::Ordering::Greater => k = y.next(),
-                std::cmp::Ordering::Equal => {
-                    sum += own.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
-                    (i, k) = (x.next(), y.next());
-                }
-            }
-        }
-        sum
-    }
-
     /// Velocity of a row with all impulses, what its softness gives way included.
     #[inline(always)]
     pub(super) fn velocity(&self, b: &Block, n: usize) -> f64 {

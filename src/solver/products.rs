@@ -1,0 +1,91 @@
+//! Products of rows, `Y Yᵀ`: how an impulse of one moves another.
+
+use super::rows::{Block, CHUNK, Rows};
+
+impl Rows {
+    /// `Y Yᵀ + R`.
+    pub(super) fn fill(&self, a: &mut [f64]) {
+        let n = self.rows.len();
+        for (i, b) in self.blocks.iter().enumerate() {
+            for c in &self.blocks[..=i] {
+                for k in 0..b.rows {
+                    a[(b.first + k) * n + c.first..][..c.rows].fill(0.0);
+                }
+                if b.is_off() || c.is_off() {
+                    continue;
+                }
+                self.couple_blocks(b, c, a);
+            }
+        }
+        for i in 0..n {
+            a[i * n + i] += self.rows[i].softness;
+            for k in 0..i {
+                a[k * n + i] = a[i * n + k];
+            }
+        }
+    }
+
+    fn couple_blocks(&self, b: &Block, c: &Block, a: &mut [f64]) {
+        match (b.rows, c.rows) {
+            (3, 3) => self.couple::<3, 3>(b, c, a),
+            (3, 1) => self.couple::<3, 1>(b, c, a),
+            (1, 3) => self.couple::<1, 3>(b, c, a),
+            (1, 1) => self.couple::<1, 1>(b, c, a),
+            _ => {
+                for p in 0..b.rows {
+                    for q in 0..c.rows {
+                        a[(b.first + p) * self.rows.len() + c.first + q] = self.between((b, p), (c, q));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Two blocks of P and Q rows.
+    #[inline(always)]
+    fn couple<const P: usize, const Q: usize>(&self, b: &Block, c: &Block, a: &mut [f64]) {
+        let n = self.rows.len();
+        let (ids, others) = (&self.ids[b.ids.clone()], &self.ids[c.ids.clone()]);
+        let y: [&[[f64; CHUNK]]; P] = std::array::from_fn(|p| self.numbers(b, p).as_chunks().0);
+        let z: [&[[f64; CHUNK]]; Q] = std::array::from_fn(|q| self.numbers(c, q).as_chunks().0);
+        let mut sums = [[[0.0; CHUNK]; Q]; P];
+        let (mut i, mut k) = (0, 0);
+        while i < ids.len() && k < others.len() {
+            match ids[i].cmp(&others[k]) {
+                std::cmp::Ordering::Less => i += 1,
+                std::cmp::Ordering::Greater => k += 1,
+                std::cmp::Ordering::Equal => {
+                    for p in 0..P {
+                        for q in 0..Q {
+                            (0..CHUNK).for_each(|j| sums[p][q][j] += y[p][i][j] * z[q][k][j]);
+                        }
+                    }
+                    (i, k) = (i + 1, k + 1);
+                }
+            }
+        }
+        for (p, sums) in sums.iter().enumerate() {
+            for (q, s) in sums.iter().enumerate() {
+                a[(b.first + p) * n + c.first + q] = (s[0] + s[1]) + (s[2] + s[3]);
+            }
+        }
+    }
+
+    /// `y_a·y_b` of two rows, each given by its block and its number in it.
+    pub(super) fn between(&self, (a, n): (&Block, usize), (b, m): (&Block, usize)) -> f64 {
+        let (x, y) = (self.numbers(a, n).chunks_exact(CHUNK), self.numbers(b, m).chunks_exact(CHUNK));
+        let (mut x, mut y) = (self.ids[a.ids.clone()].iter().zip(x), self.ids[b.ids.clone()].iter().zip(y));
+        let (mut i, mut k, mut sum) = (x.next(), y.next(), 0.0);
+        while let (Some((p, own)), Some((q, other))) = (i, k) {
+            match p.cmp(q) {
+                std::cmp::Ordering::Less => i = x.next(),
+                std::cmp::Ordering::Greater => k = y.next(),
+                std::cmp::Ordering::Equal => {
+                    sum += own.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+                    (i, k) = (x.next(), y.next());
+                }
+            }
+        }
+        sum
+    }
+}
