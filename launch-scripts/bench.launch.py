@@ -1,6 +1,7 @@
 """The node on a test stand: ros2 launch launch-scripts/bench.launch.py [namespace:=/bench] [urdf:=FILE] [params:=FILE]
 
-Starts the program that `cargo build --release` has made in this folder, or the one that REALNOID_BIN names.
+Starts the program that REALNOID_BIN names, else the one installed beside these files, else the one that `cargo build --release` has
+made in this folder.
 """
 
 import os
@@ -10,11 +11,14 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, ExecuteProcess
 from launch.substitutions import LaunchConfiguration
 
-ROOT = Path(__file__).resolve().parents[1]
-PROGRAM = os.environ.get("REALNOID_BIN", str(ROOT / "target/release/realnoid"))
+HERE = Path(__file__).resolve().parent
+# The repository, or share/realnoid of an installation.
+ROOT = HERE.parent
+INSTALLED = HERE.parents[2] / "lib/realnoid/realnoid"
+PROGRAM = os.environ.get("REALNOID_BIN", str(INSTALLED if INSTALLED.exists() else ROOT / "target/release/realnoid"))
 ARGUMENTS = {
     "urdf": (ROOT / "urdf/origin.urdf", "robot"),
-    "params": (ROOT / "config/default.yaml", "parameter file"),
+    "params": (ROOT / "config/bench.params.yaml", "parameter file"),
     "namespace": ("/", "namespace, beginning with a slash"),
     "base": ("fixed", "fixed: held on the stand; free"),
     "gravity": ("[0.0, 0.0, -9.80665]", "m/s^2, world frame"),

@@ -1,6 +1,6 @@
-"""The humanoid free and weightless: ros2 launch launch-scripts/free.launch.py, with the arguments of bench.launch.py
+"""The humanoid free and weightless, without a ground: ros2 launch launch-scripts/free.launch.py, with the arguments of bench.launch.py
 
-There is no ground yet: with weight (gravity:="[0.0, 0.0, -9.80665]") it falls for ever.
+With a ground to stand on: on_the_ground.launch.py.
 """
 
 from pathlib import Path

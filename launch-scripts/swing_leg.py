@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Swings the left leg by servo commands for five seconds of simulated time, and plots the twist of the foot.
+"""Swings the left leg by servo commands for five seconds of simulated time; plots the twist of the foot and what the hip does.
 
     cargo run --release                    # in another shell
     python launch-scripts/swing_leg.py [OUT]
 
-Needs rclpy. Writes OUT.png (default: swing_leg.png) if matplotlib is there, else OUT.csv.
+Needs rclpy. Writes OUT.png (default: swing_leg.png) if matplotlib is there, else OUT.csv. The joint monitor of the hip is shown if the
+messages of this repository are installed (colcon build), and left out otherwise.
 """
 
 import csv
@@ -16,8 +17,14 @@ from geometry_msgs.msg import TwistStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
+try:
+    from realnoid.msg import JointMonitors
+except ImportError:
+    JointMonitors = None
+
 DURATION, FREQUENCY, RAMP = 5.0, 0.8, 1.0  # s, Hz, s of simulated time
 # Joint: (middle of the swing, amplitude, phase), rad. A negative hip pitch lifts the thigh forward.
+HIP = "left_hip"  # a joint group
 SWING = {"left_hip_pitch": (-0.3, 0.4, 0.0), "left_knee": (0.6, 0.4, -0.5 * math.pi)}
 
 
@@ -26,14 +33,16 @@ def seconds(stamp):
 
 
 class SwingLeg(Node):
-    """Answers every tenth state with the servo targets of that instant, and keeps the twists."""
+    """Answers every tenth state with the servo targets of that instant, and keeps twists and monitors."""
 
     def __init__(self):
         super().__init__("swing_leg")
-        self.states, self.start, self.elapsed, self.rows = 0, None, 0.0, []
+        self.states, self.start, self.elapsed, self.rows, self.monitors = 0, None, 0.0, [], {}
         self.command = self.create_publisher(JointState, "joint_command", 10)
         self.create_subscription(JointState, "joint_states", self.on_state, 100)
         self.create_subscription(TwistStamped, "twist/left_foot", self.on_twist, 100)
+        if JointMonitors:
+            self.create_subscription(JointMonitors, "joint_monitors", self.on_monitors, 100)
 
     def on_state(self, state):
         now = seconds(state.header.stamp)
@@ -54,6 +63,16 @@ class SwingLeg(Node):
             v, w = message.twist.linear, message.twist.angular
             self.rows.append((seconds(message.header.stamp) - self.start, v.x, v.y, v.z, w.x, w.y, w.z))
 
+    def on_monitors(self, message):
+        hip = next(joint for joint in message.joints if joint.name == HIP)
+        if self.start is not None:
+            at = seconds(message.header.stamp) - self.start
+            self.monitors[at] = (hip.pitch, hip.pitch_speed, hip.pitch_torque)
+
+    def table(self):
+        """Twists, and beside each the monitor of the same instant; nan where there is none."""
+        return [(*row, *self.monitors.get(row[0], (math.nan,) * 3)) for row in self.rows]
+
 
 def plot(rows, name):
     import matplotlib
@@ -62,15 +81,18 @@ def plot(rows, name):
     from matplotlib import pyplot
 
     time, *columns = zip(*rows)
-    figure, (linear, angular) = pyplot.subplots(2, sharex=True, figsize=(8, 5), layout="constrained")
-    for axis, part, unit in ((linear, columns[:3], "m/s"), (angular, columns[3:], "rad/s")):
-        for label, values in zip("xyz", part):
+    figure, axes = pyplot.subplots(3, sharex=True, figsize=(8, 7), layout="constrained")
+    monitor = ("angle, rad", "speed, rad/s", "torque / 10, N·m")
+    columns[8] = [torque / 10 for torque in columns[8]]
+    parts = (("xyz", columns[:3], "m/s"), ("xyz", columns[3:6], "rad/s"), (monitor, columns[6:], HIP + " pitch"))
+    for axis, (labels, part, unit) in zip(axes, parts):
+        for label, values in zip(labels, part):
             axis.plot(time, values, label=label)
         axis.set_ylabel(unit)
         axis.grid(alpha=0.3)
         axis.legend(loc="upper right")
-    linear.set_title("left_foot: velocity of its origin, angular velocity; along its own axes")
-    angular.set_xlabel("simulated time, s")
+    axes[0].set_title("left_foot: velocity of its origin, angular velocity; along its own axes")
+    axes[2].set_xlabel("simulated time, s")
     figure.savefig(f"{name}.png", dpi=120)
     return f"{name}.png"
 
@@ -78,7 +100,7 @@ def plot(rows, name):
 def write(rows, name):
     with open(f"{name}.csv", "w", newline="") as file:
         table = csv.writer(file)
-        table.writerow(["time", "vx", "vy", "vz", "wx", "wy", "wz"])
+        table.writerow(["time", "vx", "vy", "vz", "wx", "wy", "wz", "hip_pitch", "hip_pitch_speed", "hip_pitch_torque"])
         table.writerows(rows)
     return f"{name}.csv"
 
@@ -90,10 +112,10 @@ def main():
     while node.elapsed < DURATION:
         rclpy.spin_once(node)
     try:
-        file = plot(node.rows, name)
+        file = plot(node.table(), name)
     except ImportError:
-        file = write(node.rows, name)
-    print(f"{node.states} states and {len(node.rows)} twists in {node.elapsed:.3f} s of simulated time: {file}")
+        file = write(node.table(), name)
+    print(f"{node.states} states, {len(node.rows)} twists and {len(node.monitors)} monitors in {node.elapsed:.3f} s of simulated time: {file}")
     rclpy.try_shutdown()
 
 

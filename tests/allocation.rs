@@ -51,7 +51,7 @@ fn the_counter_counts() {
 #[test]
 fn a_thousand_steps_allocate_nothing() {
     for base in [Base::Fixed, Base::Free] {
-        for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+        for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4, Integrator::Extrapolation] {
             let model = load(Source::default(), base).unwrap_or_else(|report| panic!("{report}")).model;
             let settings = Settings { integrator, steps_per_interval: 1, ..Settings::default() };
             let mut world = World::new(model.clone(), settings).unwrap();
@@ -165,7 +165,7 @@ fn couplings_allocate_nothing() {
     let model =
         load(Source { urdf: Some(file.path()), packages: &[] }, Base::Fixed).unwrap_or_else(|e| panic!("{e}")).model;
     assert_eq!(model.couplings.len(), 2);
-    for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4] {
+    for integrator in [Integrator::SemiImplicitEuler, Integrator::Rk4, Integrator::Extrapolation] {
         let settings = Settings { integrator, steps_per_interval: 1, ..Settings::default() };
         let mut world = World::new(model.clone(), settings).unwrap();
         let mut commands = world.commands().to_vec();

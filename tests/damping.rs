@@ -11,7 +11,8 @@ use realnoid::world::{Integrator, Settings, World};
 use std::sync::Arc;
 use urdf::{model, robot};
 
-const ALL: [Integrator; 3] = [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler, Integrator::Rk4];
+const ALL: [Integrator; 4] =
+    [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler, Integrator::Rk4, Integrator::Extrapolation];
 
 fn damped(name: &str, mass: f64, damping: &str) -> String {
     format!(
@@ -60,6 +61,8 @@ fn a_free_body_decays_by_the_law_to_rounding() {
                         Integrator::ImplicitMidpoint => 1e-8 * decay,
                         Integrator::SemiImplicitEuler => 0.0,
                         Integrator::Rk4 => decay.powi(5) * step.powi(4),
+                        // 1e-9 per second of 1 + |v|, in units of v ≥ 1.
+                        Integrator::Extrapolation => 2e-9,
                     };
                 let (p, _) =
                     momenta(&format!("linear='{d}'"), settings(integrator, step), 1.0, ([0.0; 3], [1.0, 2.0, -2.0]));

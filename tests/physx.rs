@@ -371,6 +371,7 @@ fn step(w: &World) -> realnoid::engine::StepSettings {
         passes: s.solver_iterations,
         effects: w.model().effects,
         integrator: s.integrator,
+        accuracy: s.accuracy,
     }
 }
 

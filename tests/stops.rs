@@ -54,7 +54,7 @@ const STEPS: [f64; 5] = [0.01, 0.003, 0.001, 0.0003, 0.0001];
 /// energy never grows.
 #[test]
 fn a_stop_hit_at_speed() {
-    for integrator in [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler, Integrator::Rk4] {
+    for (_, integrator) in Integrator::NAMES {
         for h in STEPS {
             for speed in [1.0, 10.0, 100.0, -1.0, -10.0, -100.0] {
                 let mut w = world(&wheel(HARD), h, integrator);

@@ -103,4 +103,5 @@ def main():
         print(f"| {name} | {us:.1f} | {us / base:.2f} | {1e3 * deepest:.3f} | {count:.1f} |")
 
 
-main()
+if __name__ == "__main__":
+    main()

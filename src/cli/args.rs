@@ -1,6 +1,7 @@
 //! Raw arguments, as they are typed, and how single values are read.
 
 use super::load::Source;
+use super::start_args::StartArgs;
 use clap::{Args, Parser, Subcommand};
 use std::path::{Path, PathBuf};
 
@@ -27,6 +28,10 @@ pub enum Command {
         /// `--package`.
         #[command(flatten)]
         packages: PackageArgs,
+        /// Records everything that the node publishes, and the commands that it gets, into this folder, which must not exist yet:
+        /// a bag for rosbag2, and for `realnoid replay`.
+        #[arg(long, value_name = "DIR")]
+        record: Option<PathBuf>,
     },
     /// Every finding in a URDF with line, column and mend; exit code 1 if one is an error.
     Check {
@@ -61,8 +66,39 @@ pub enum Command {
     /// cannot be written. 2: an argument or a case is wrong.
     #[command(after_long_help = crate::cli::conformance::help())]
     Engines(EnginesArgs),
+    /// Cases that hurt, with every integrator and engine over steps from 10 to 0.1 ms: what becomes of each, and whether it is told.
+    ///
+    /// Exit code 0: every run is good, or what it could not do is told. 1: one is wrong in silence or not finite, or a file cannot be
+    /// written. 2: an argument or a case is wrong.
+    Hard(HardArgs),
+    /// Many worlds over ranges of parameters, on all cores: a row for each in a table.
+    ///
+    /// Rows are written as worlds finish; the same command goes on where an interrupted one has ended. Exit code 0: every world of this
+    /// shard has its row (the column status tells how it ended). 1: stopped by a signal, or a file cannot be written. 2: an argument or
+    /// the specification is wrong.
+    Sweep(SweepArgs),
+    /// Makes a recorded run again, with the recorded commands, settings and orders, and compares every state bit for bit.
+    ///
+    /// Exit code 0: all bits are the same. 1: they are not, or not all could be compared. 2: an argument is wrong, or the bag cannot
+    /// be replayed: it begins in the middle of a run, or was not made by realnoid.
+    Replay(ReplayArgs),
+    /// Completes a bag that was cut off (the process was killed, the disk was full): index, footer and metadata.yaml.
+    ///
+    /// Exit code 0: the bag is complete. 1: it cannot be completed; it is as it was. 2: there is none.
+    Recover {
+        /// The folder of a bag, or a .mcap file.
+        bag: PathBuf,
+    },
+    /// What accuracy costs: on cases whose outcome is known, the error of every engine and integrator over steps, beside CPU time.
+    ///
+    /// Tables on standard output; --out makes a page with diagrams. Exit code 0: all was measured. 1: a case cannot be run, a file not be
+    /// written, or the peer not be had. 2: an argument is wrong.
+    Accuracy(super::accuracy::AccuracyArgs),
     /// Time per call of kinematics, rnea, crba, aba and step: medians, thread CPU time.
     Bench(BenchArgs),
+    /// The price list of a scene: what calls for each effect, what it costs per step in instructions and time, and by how much a run
+    /// without it is wrong. Effects that --off names are off from the beginning and have no price.
+    Effects(Box<crate::cli::effects::EffectsArgs>),
     /// Forward dynamics of single states, to compare with other programs: one JSON object per line on standard input
     /// `{"position": [..], "velocity": [..], "effort": [..], "base_pose": [x,y,z,qx,qy,qz,qw], "base_twist": [w, v]}`,
     /// per axis in the order of the URDF; one line `{"acceleration": [..], "base_acceleration": [..]}` out for each.
@@ -70,7 +106,7 @@ pub enum Command {
 }
 
 /// Where packages are that mesh files name.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub struct PackageArgs {
     /// Folder of a package that mesh files name as package://NAME/…; asked before ROS_PACKAGE_PATH, AMENT_PREFIX_PATH
     /// and the folders around the URDF file. As often as needed.
@@ -174,20 +210,11 @@ pub struct EvaluateArgs {
 }
 
 /// What is simulated, from which start, under which commands, and for how long.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct RunArgs {
-    /// URDF file; without one, that of the scene.
-    #[arg(required_unless_present = "scene")]
-    pub urdf: Option<PathBuf>,
-    /// `--package`.
+    /// Robot, scene and state at start.
     #[command(flatten)]
-    pub packages: PackageArgs,
-    /// World settings, robots, bodies and the ground (YAML); flags win over it.
-    #[arg(long)]
-    pub scene: Option<PathBuf>,
-    /// The flat ground z = 0, where the scene has none of its own.
-    #[arg(long)]
-    pub ground: bool,
+    pub start: StartArgs,
     /// Simulated time, s; rounded to whole control intervals.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub duration: f64,
@@ -200,36 +227,18 @@ pub struct RunArgs {
     /// Solver iterations per step, 1 to 10000; 10 unless the scene says otherwise.
     #[arg(long)]
     pub iterations: Option<u32>,
-    /// implicit_midpoint, semi_implicit_euler or rk4.
-    #[arg(long)]
-    pub integrator: Option<String>,
+    /// Error per second of the integrator extrapolation, 1e-14 to 1e-2; chooses it, and one step per interval (or --steps).
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub accuracy: Option<f64>,
     /// m/s², world frame; 0,0,-9.80665 unless the scene says otherwise.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub gravity: Option<String>,
     /// Simulated time per control interval against the interval, 0 to 100.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub time_scale: Option<f64>,
-    /// fixed (on a test stand) or free.
-    #[arg(long, value_parser = ["fixed", "free"])]
-    pub base: Option<String>,
-    /// Initial position (rad or m) and speed of an axis.
-    #[arg(long, value_name = "AXIS=POSITION[,VELOCITY]")]
-    pub set: Vec<String>,
-    /// Root link in the world: position, m, and quaternion.
-    #[arg(long, value_name = "X,Y,Z,QX,QY,QZ,QW", allow_hyphen_values = true)]
-    pub base_pose: Option<String>,
-    /// Twist of a free base in the base frame, angular (rad/s) first.
-    #[arg(long, value_name = "WX,WY,WZ,VX,VY,VZ", allow_hyphen_values = true)]
-    pub base_twist: Option<String>,
     /// Position of an axis at start, set from its root side: what hangs on the axis stays where it is, the base moves.
     #[arg(long, value_name = "AXIS=POSITION")]
     pub turn: Vec<String>,
-    /// Applied torque (N·m; N for a linear axis) and applied speed (rad/s; m/s) from the start.
-    #[arg(long, value_name = "AXIS=TORQUE[,SPEED]")]
-    pub effort: Vec<String>,
-    /// Servo target (rad; m for a linear axis) from the start, and what bounds its torque and speed.
-    #[arg(long, value_name = "AXIS=POSITION[,TORQUE[,SPEED]]")]
-    pub servo: Vec<String>,
     /// Commands and drive settings over time (YAML): a list of entries {at: seconds, axis: NAME, …}.
     ///
     /// An entry takes mode (idle, torque, servo), torque, speed, target, max_torque, no_load_speed, static_resistance,
@@ -237,13 +246,45 @@ pub struct RunArgs {
     /// is. Entries are in the order of time; one inside a control interval takes effect with the next interval.
     #[arg(long, value_name = "FILE.yaml")]
     pub script: Option<PathBuf>,
-    /// Switch an effect off: gravity, damping, friction, limits, drives, rotor_inertia, compliance, mimic, breaking,
-    /// body_damping, contact, deactivation.
-    #[arg(long, value_name = "EFFECT")]
-    pub off: Vec<String>,
     /// Switch an effect on.
     #[arg(long, value_name = "EFFECT")]
     pub on: Vec<String>,
+}
+
+/// `sweep`.
+#[derive(Debug, Args)]
+pub struct SweepArgs {
+    /// The specification (docs/sweep.md); with --merge, the tables of shards.
+    #[arg(required = true, value_name = "SPEC.yaml")]
+    pub files: Vec<PathBuf>,
+    /// The table; SPEC.csv, or SPEC.shard-I-of-N.csv, in the working folder, if none is named.
+    #[arg(long, value_name = "FILE.csv")]
+    pub out: Option<PathBuf>,
+    /// Worlds at once; one per core, if nothing is said.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub jobs: Option<u32>,
+    /// Only every N-th world, from I (from 0) on.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<crate::cli::sweep::Shard>,
+    /// A bag for each world, as that of simulate, in a folder of its own in this one.
+    #[arg(long, value_name = "DIR")]
+    pub bags: Option<PathBuf>,
+    /// A table for each world, as that of simulate, in this folder.
+    #[arg(long, value_name = "DIR", conflicts_with = "bags")]
+    pub tables: Option<PathBuf>,
+    /// Instead: puts the tables of shards together, in the order of worlds.
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["out", "jobs", "shard", "bags", "tables"])]
+    pub merge: Option<PathBuf>,
+}
+
+/// `replay`.
+#[derive(Debug, Args)]
+pub struct ReplayArgs {
+    /// The folder of a bag that `realnoid run --record` has written, or its .mcap file.
+    pub bag: PathBuf,
+    /// A row for each state of the replay, as those of simulate.
+    #[arg(long, value_name = "FILE.csv")]
+    pub out: Option<PathBuf>,
 }
 
 /// `simulate`: the fixed contract of DESIGN §1.
@@ -269,6 +310,9 @@ pub struct SimulateArgs {
     /// the first to the second, depth (m) and force on the second (N, averaged over the last step), in the world frame.
     #[arg(long, value_name = "FILE.csv")]
     pub contacts: Option<PathBuf>,
+    /// Makes each interval, and the whole run, again with half the step: tells what the run is off by, in `error_estimate`.
+    #[arg(long)]
+    pub estimate_error: bool,
 }
 
 /// `compare`.
@@ -314,6 +358,28 @@ pub struct EnginesArgs {
     pub json: bool,
     /// A row per case, quantity and engine.
     #[arg(long, value_name = "FILE.csv", requires = "cases")]
+    pub csv: Option<PathBuf>,
+}
+
+/// `hard`.
+#[derive(Debug, Args)]
+pub struct HardArgs {
+    /// Case files: a folder of NAME.yaml, or one of them.
+    pub cases: PathBuf,
+    /// An engine to run; as often as needed. All that this program was built with, if none is given.
+    #[arg(long, value_name = "NAME")]
+    pub engine: Vec<String>,
+    /// An integrator of rbx; as often as needed. All, if none is given.
+    #[arg(long, value_name = "NAME")]
+    pub integrator: Vec<String>,
+    /// A step, ms; as often as needed. 10, 5, 2, 1, 0.5 and 0.1, if none is given.
+    #[arg(long, value_name = "MS")]
+    pub step: Vec<f64>,
+    /// A page of documentation.
+    #[arg(long, value_name = "FILE.md")]
+    pub markdown: Option<PathBuf>,
+    /// A row per case, engine, integrator and step.
+    #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
 }
 

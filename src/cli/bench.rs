@@ -3,7 +3,9 @@
 use super::args::BenchArgs;
 use super::base_by_name;
 use super::load::load_or_say;
-use crate::dynamics::{Kinematics, Workspace, aba, aba_fused, crba, kinematics, rnea};
+use crate::dynamics::{
+    AbaBatch, Kinematics, LaneKind, Limbs, Workspace, aba, aba_fused, aba_limbs, crba, kinematics, rnea,
+};
 use crate::engine::State;
 use crate::math::Vec3;
 use crate::model::{Base, Model};
@@ -118,11 +120,64 @@ fn measure(m: &Arc<Model>, seconds: f64) -> Vec<Row> {
             let _ = aba_fused(m, &mut fused, (&s.q, &s.v), &i.tau, i.gravity, black_box(&mut i.out));
         }));
     }
+    if let Some(mut limbs) = Limbs::new(m) {
+        rows.push(timed("aba_limbs", seconds, |n| {
+            let (s, work) = (&i.states[n], (&mut ws, &mut limbs));
+            aba_limbs(m, work, (&s.q, &s.v), &i.tau, i.gravity, black_box(&mut i.out));
+        }));
+    }
+    for (name, copied, kind) in LANES {
+        rows.extend(lanes(m, &i, (name, copied, kind), seconds));
+    }
     rows.push(step("step_implicit_midpoint", m, (Integrator::ImplicitMidpoint, AxisCommand::IDLE), seconds));
     rows.push(step("step_semi_implicit_euler", m, (Integrator::SemiImplicitEuler, AxisCommand::IDLE), seconds));
     rows.push(step("step_rk4", m, (Integrator::Rk4, AxisCommand::IDLE), seconds));
     rows.push(step("step_servos_hold", m, (Integrator::ImplicitMidpoint, AxisCommand::servo(0.0)), seconds));
     rows
+}
+
+/// Rows of robots side by side, per robot: name, with copying each state in and each result out, how.
+const LANES: [(&str, bool, LaneKind); 6] = [
+    ("aba_lanes_4", false, LaneKind::Four),
+    ("aba_lanes_4_fused", false, LaneKind::FourFused),
+    ("aba_lanes_8", false, LaneKind::Eight),
+    ("aba_lanes_8_fused", false, LaneKind::EightFused),
+    ("aba_lanes_8_copied", true, LaneKind::Eight),
+    ("aba_lanes_portable", false, LaneKind::Portable),
+];
+/// Stack frames by which lane kernels are moved from one batch to the next: they spill some kB there, and where that lies
+/// relative to what they work on changes their time by a quarter.
+const DEPTHS: usize = 8;
+
+fn lanes(m: &Model, i: &Inputs, (name, copied, kind): (&'static str, bool, LaneKind), seconds: f64) -> Option<Row> {
+    let mut batch = kind.is_available().then(|| AbaBatch::new(m, STATES, kind))?;
+    for (n, s) in i.states.iter().enumerate() {
+        batch.set(n, (&s.q, &s.v), &i.tau);
+    }
+    let (mut out, mut depth) = (vec![0.0; m.nv], 0);
+    Some(timed(name, seconds, |n| {
+        if copied {
+            batch.set(n, (&i.states[n].q, &i.states[n].v), &i.tau);
+        }
+        if n == 0 {
+            depth = (depth + 1) % DEPTHS;
+            deeper(depth, &mut || black_box(&mut batch).solve(m, i.gravity));
+        }
+        if copied {
+            batch.accelerations(n, black_box(&mut out));
+        }
+    }))
+}
+
+/// Calls with the stack further down by so many frames of about half a page.
+#[inline(never)]
+fn deeper(depth: usize, call: &mut dyn FnMut()) {
+    let room = black_box([0u8; 448]);
+    match depth {
+        0 => call(),
+        _ => deeper(depth - 1, call),
+    }
+    black_box(room);
 }
 
 /// A step of 1 ms from the initial state on; it starts anew after every batch, so that all batches do the same work.

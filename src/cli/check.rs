@@ -72,10 +72,15 @@ pub fn read_text(path: &Path) -> Result<String, String> {
     if path.is_dir() {
         return Err(format!("'{shown}' is a folder; name a URDF file in it"));
     }
+    if let Some(text) = super::texts::instead_of(path) {
+        return Ok(text);
+    }
     let bytes = std::fs::read(path).map_err(|error| format!("cannot read '{shown}': {error}"))?;
-    String::from_utf8(bytes).map_err(|error| {
+    let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..at].iter().filter(|b| **b == b'\n').count() + 1;
         format!("'{shown}' is not UTF-8 text (line {line}); save it as UTF-8")
-    })
+    })?;
+    super::texts::remember(path, &text);
+    Ok(text)
 }

@@ -41,8 +41,8 @@ pub fn turn(args: &RunArgs, world: &mut World) -> Result<(), String> {
 pub fn command(args: &RunArgs, world: &mut World) -> Result<(), String> {
     let model = world.model().clone();
     let (mut commands, mut taken) = (world.commands().to_vec(), Vec::new());
-    let efforts = args.effort.iter().map(|text| ("--effort", "AXIS=TORQUE[,SPEED]", text, effort as Make));
-    let servos = args.servo.iter().map(|text| ("--servo", "AXIS=POSITION[,TORQUE[,SPEED]]", text, servo as Make));
+    let efforts = args.start.effort.iter().map(|text| ("--effort", "AXIS=TORQUE[,SPEED]", text, effort as Make));
+    let servos = args.start.servo.iter().map(|text| ("--servo", "AXIS=POSITION[,TORQUE[,SPEED]]", text, servo as Make));
     for (flag, form, text, make) in efforts.chain(servos) {
         let (name, values) = assignment(flag, form, text)?;
         let Some(command) = make(&values) else { return Err(format!("{flag} {text}: must be {form}")) };

@@ -165,6 +165,7 @@ pub fn examine_text((file, text): (&str, &str), packages: &[(String, PathBuf)], 
         findings.extend(unsound);
         sound.then_some((d, bodies, model))
     });
+    super::texts::remember_files(&meshes);
     Examined { file: file.to_owned(), text: text.to_owned(), findings, robot, meshes }
 }
 

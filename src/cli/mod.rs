@@ -1,5 +1,6 @@
 //! The command line, thin.
 
+pub mod accuracy;
 pub mod args;
 pub mod bench;
 pub mod check;
@@ -8,14 +9,23 @@ pub mod compare;
 pub mod conformance;
 pub mod drawing;
 mod drop;
+pub mod effects;
+mod estimate;
 pub mod evaluate;
+pub mod hard;
 pub mod inspect;
 pub mod load;
 mod outcome;
+pub mod recover;
+pub mod replay;
 pub mod run;
 pub mod scene;
 pub mod script;
 pub mod simulate;
+mod start;
+mod start_args;
+pub mod sweep;
+mod texts;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -26,8 +36,8 @@ use std::process::ExitCode;
 pub fn main() -> ExitCode {
     let (own, ros) = crate::ros::split_arguments(std::env::args_os());
     let cli = Cli::parse_from(own);
-    match cli.command.unwrap_or(Command::Run { urdf: None, packages: Default::default() }) {
-        Command::Run { urdf, packages } => run::start(packages.source(urdf.as_deref()), ros),
+    match cli.command.unwrap_or(Command::Run { urdf: None, packages: Default::default(), record: None }) {
+        Command::Run { urdf, packages, record } => run::start(packages.source(urdf.as_deref()), ros, record.as_deref()),
         Command::Check { urdf, scene, engine, packages } => {
             check::run(packages.source(urdf.as_deref()), scene.as_deref(), engine.as_deref())
         }
@@ -35,7 +45,13 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Engines(args) => conformance::run(&args),
+        Command::Hard(args) => hard::run(&args),
+        Command::Replay(args) => replay::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::Recover { bag } => recover::run(&bag),
+        Command::Accuracy(args) => accuracy::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Effects(args) => effects::run(&args),
         Command::Evaluate(args) => evaluate::run(&args),
     }
 }

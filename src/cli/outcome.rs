@@ -22,6 +22,8 @@ pub(super) struct Outcome {
     pub files: Vec<PathBuf>,
     /// Per axis.
     pub peaks: Vec<Peak>,
+    /// The error of the run, if it was asked for.
+    pub estimate: Option<serde_json::Value>,
 }
 
 /// Greatest magnitudes at the ends of the control intervals (J-15, J-16).
@@ -63,6 +65,11 @@ impl Progress {
         Self { next: std::io::stderr().is_terminal().then(|| Instant::now() + Self::PAUSE), shown: false }
     }
 
+    /// Nobody is told.
+    pub fn silent() -> Self {
+        Self { next: None, shown: false }
+    }
+
     pub fn show(&mut self, done: u64, all: u64) {
         if self.next.is_some_and(|next| Instant::now() >= next) {
             let _ = write!(std::io::stderr(), "\r{:3.0} % of the duration", 100.0 * done as f64 / all as f64);
@@ -83,7 +90,7 @@ pub(super) fn counted(s: &Stats) -> [(u64, &'static str); 7] {
         (
             s.fallback_steps,
             "steps were made by implicit_midpoint, because an axis began or ceased to stand still, a servo was on its \
-             way, a viscous term was stiff, or a joint is soft or a fixed one that may break",
+             way, something touched, a viscous term was stiff, or a joint is soft or a fixed one that may break",
         ),
         (
             s.halvings,

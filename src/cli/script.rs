@@ -74,22 +74,39 @@ struct Machine {
     static_resistance: f64,
 }
 
-impl Script {
-    /// Reads a file for a world with its commands at start. `interval` is the simulated time of a control interval, s, and
-    /// `count` how many of them there are.
+/// The text of a script.
+pub struct ScriptText {
+    /// The file, for messages.
+    pub label: String,
+    /// YAML.
+    pub text: String,
+}
+
+impl ScriptText {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Names the file.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        Ok(Self { label: path.display().to_string(), text: super::check::read_text(path)? })
+    }
+
+    /// For a world with its commands at start. `interval` is the simulated time of a control interval, s, and `count` how many of
+    /// them there are.
     ///
     /// # Errors
     /// Names the file and line, and what is wrong there.
-    pub fn read(path: &Path, world: &World, d: &Description, (interval, count): (f64, u64)) -> Result<Self, String> {
-        let shown = path.display();
-        let text = super::check::read_text(path)?;
+    pub fn compile(&self, world: &World, d: &Description, (interval, count): (f64, u64)) -> Result<Script, String> {
+        let shown = &self.label;
         let entries: Vec<Spanned<Entry>> =
-            serde_saphyr::from_str(&text).map_err(|e| format!("--script {shown}: {e}"))?;
-        let script = Self::compile(entries, &shown.to_string(), (world, d), (interval, count));
+            serde_saphyr::from_str(&self.text).map_err(|e| format!("--script {shown}: {e}"))?;
+        let script = Script::compile(entries, shown, (world, d), (interval, count));
         script.map_err(|reason| format!("--script {reason}"))
     }
+}
 
-    /// As [`Script::read`], of the entries of a file.
+impl Script {
+    /// Of the entries of a file.
     ///
     /// # Errors
     /// Names the file and line, and what is wrong there.

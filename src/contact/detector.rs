@@ -12,7 +12,7 @@ use super::surface::{Query, on_surface};
 use super::touch::Touch;
 use super::vector::{Frame, norm};
 use crate::dynamics::Kinematics;
-use crate::model::{Model, Surface};
+use crate::model::{Model, Part as EffectPart, Surface};
 
 /// Touches are found up to this gap, and further as far as bodies come nearer within a step, m.
 const REACH: f64 = 2e-3;
@@ -27,6 +27,8 @@ pub struct Detector {
     scratch: Scratch,
     raws: Vec<Raw>,
     fastest: f64,
+    /// Is [`Detector::fastest`] asked for?
+    watches: bool,
 }
 
 impl Detector {
@@ -44,7 +46,14 @@ impl Detector {
             a.body != b.body && (convex(a) || convex(b)) && !excluded(a, b)
         };
         let broad = Broad::new(&parts, may)?;
-        Some(Self { broad, parts, scratch: Scratch::default(), raws: vec![], fastest: 0.0 })
+        Some(Self {
+            broad,
+            parts,
+            scratch: Scratch::default(),
+            raws: vec![],
+            fastest: 0.0,
+            watches: !m.effects.off.has(EffectPart::ContinuousDetection),
+        })
     }
 
     /// How the surfaces of a pair touch.
@@ -53,9 +62,9 @@ impl Detector {
     }
 
     /// Of the last [`Detector::find`]: how far two parts that are near come towards each other within the step, as a multiple
-    /// of the least width of the thinner one. Above 1 they might pass through each other unseen.
+    /// of the least width of the thinner one. Above 1 they might pass through each other unseen. 0 if continuous detection is off.
     pub fn fastest(&self) -> f64 {
-        self.fastest
+        if self.watches { self.fastest } else { 0.0 }
     }
 
     /// All touches that could close within a step of `h` seconds of this motion, ordered by [`Touch::key`], each key once.

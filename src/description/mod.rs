@@ -4,6 +4,7 @@
 //! as well, and the two must agree.
 
 mod checks;
+mod control;
 mod element;
 mod finding;
 mod geometry;
@@ -20,6 +21,7 @@ mod types;
 mod unknown;
 mod xml;
 
+pub use control::{ControlBlock, ControlJoint, INTERFACES};
 pub use finding::{Finding, Severity, render};
 pub use geometry::*;
 pub use types::*;
@@ -32,7 +34,7 @@ use std::sync::Arc;
 const RUN_XACRO: &str = "run xacro first: xacro robot.urdf.xacro > robot.urdf";
 
 /// Elements of `<robot>` that mean something here.
-const KNOWN: &[&str] = &["link", "joint", "material", "realnoid"];
+const KNOWN: &[&str] = &["link", "joint", "material", "realnoid", "ros2_control"];
 
 /// What reading a text gives.
 #[derive(Clone, Debug)]
@@ -80,6 +82,7 @@ fn read_robot(robot: &Element, text: &str, file: &str, report: &mut Report) -> O
         groups: tags.groups.iter().map(|(group, _)| group.clone()).collect(),
         chains: tags.chains.iter().map(|(chain, _)| chain.clone()).collect(),
         rigs: tags.rigs.iter().map(|(rig, _)| rig.clone()).collect(),
+        controls: robot.all("ros2_control").map(|e| control::read(&e, report)).collect(),
     };
     checks::run(&description, robot, &tags, all_joints_read, report);
     Some(description)

@@ -3,7 +3,7 @@
 //! Nothing is inferred here: a value that the text does not give is `None`, an angle is what was written
 //! (radians), and every item keeps its [`Position`]. Units are SI, frames REP-103 unless said otherwise.
 
-use super::{Body, PlacedShape};
+use super::{Body, ControlBlock, PlacedShape};
 use crate::math::{Pose, Quat, Vec3, from_roll_pitch_yaw};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -40,6 +40,8 @@ pub struct Description {
     pub chains: Vec<Chain>,
     /// `<separate_rig>` tags.
     pub rigs: Vec<SeparateRig>,
+    /// `<ros2_control>` blocks.
+    pub controls: Vec<ControlBlock>,
 }
 
 impl Description {

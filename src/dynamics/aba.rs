@@ -5,12 +5,13 @@
 //! recomputed instead of stored: the small workspace is what makes it fast.
 
 use super::DofIn;
-use super::articulated::{Acc, Art, Spatial};
+use super::articulated::{Acc, Art, Spatial, Sum, sums};
 use super::ball::{Ball, BallIn, eliminate_ball, eliminate_floating};
 use super::crba::Composite;
 use super::damping::{Damped, resist};
 use super::eliminate::{eliminate_axis, eliminate_linear_z, revolute, revolute_root};
-use super::joint::{bias, joint_transform, joint_velocity, turned_z, universal_axis};
+use super::joint::{axis_z, bias, joint_transform, joint_velocity, turned, turned_outward, universal_axis};
+use super::limbs::{Limbs, hybrid_limbs};
 use crate::math::{Fma, M3, Real, V3};
 use crate::model::{Body, JointType, Model};
 
@@ -56,6 +57,10 @@ pub struct Workspace<T> {
     /// The bodies that take part, first and one past the last, ascending: whole trees. The accelerations of the others stay
     /// as they are.
     pub active: Vec<(usize, usize)>,
+    /// Per body: where what it collects comes from.
+    sums: Vec<Sum>,
+    /// For [`aba_hybrid`], if limbs are computed side by side.
+    limbs: Option<Box<Limbs>>,
 }
 
 impl<T: Real> Workspace<T> {
@@ -75,7 +80,16 @@ impl<T: Real> Workspace<T> {
             damped: Vec::with_capacity(model.dampings.len()),
             wrenches: vec![Spatial::default(); if model.dampings.is_empty() { 0 } else { n }],
             active: vec![(1, n)],
+            sums: sums(model),
+            limbs: None,
         }
+    }
+
+    /// From now on [`aba_hybrid`] computes limbs side by side, where all bodies take part and none is damped. The bits stay
+    /// the same. False if that does not pay for this model, or cannot be done on this machine.
+    pub fn put_side_by_side(&mut self, m: &Model) -> bool {
+        self.limbs = Limbs::new(m).filter(Limbs::pays).map(Box::new);
+        self.limbs.is_some()
     }
 
     /// Acceleration per torque of a velocity coordinate in the last solve, with what hangs on it free and its base held:
@@ -151,11 +165,25 @@ fn fma_slice_mut(x: &mut [f64]) -> &mut [Fma] {
 /// Hybrid dynamics: torques, implicit diagonals and locks from `ws.dofs` and `ws.ball_in`; reactions of locked
 /// coordinates to `ws.reaction` and `ws.ball_in`.
 pub fn aba_hybrid(m: &Model, ws: &mut Workspace<f64>, state: (&[f64], &[f64]), gravity: [f64; 3], qdd: &mut [f64]) {
+    if ws.damped.is_empty()
+        && ws.active == [(1, m.bodies.len())]
+        && let Some(mut limbs) = ws.limbs.take()
+    {
+        hybrid_limbs(m, (ws, &mut limbs), state, gravity, qdd);
+        ws.limbs = Some(limbs);
+        return;
+    }
+    hybrid_in_turn(m, ws, state, gravity, qdd);
+}
+
+/// One body after the other. By itself, so that the compiler sees the kernel alone.
+#[inline(never)]
+fn hybrid_in_turn(m: &Model, ws: &mut Workspace<f64>, state: (&[f64], &[f64]), gravity: [f64; 3], qdd: &mut [f64]) {
     kernel::<f64, true>(m, ws, state, &[], gravity, qdd);
 }
 
 #[inline(always)]
-fn kernel<T: Real, const HYBRID: bool>(
+pub(super) fn kernel<T: Real, const HYBRID: bool>(
     m: &Model,
     ws: &mut Workspace<T>,
     (q, v): (&[T], &[T]),
@@ -168,14 +196,27 @@ fn kernel<T: Real, const HYBRID: bool>(
         let (from, to) = ws.active[k];
         for (i, b) in m.bodies.iter().enumerate().take(to).skip(from) {
             let kin = moved(b, q, v, &ws.kin[b.parent]);
-            ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
+            if ws.sums[i] == Sum::Several {
+                ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
+            }
             ws.kin[i] = kin;
         }
         if HYBRID && !ws.damped.is_empty() {
             resist(m, ws, from..to);
         }
+        // First what a body has collected, then what it hands on, in place: a copy would be most of a kilobyte in lanes.
+        let mut k = Acc::rigid(&m.bodies[0], ws.kin[0].w, ws.kin[0].v);
         for i in (from..to).rev() {
-            inward::<T, HYBRID>(m, ws, i, (q, v), tau);
+            let b = &m.bodies[i];
+            match ws.sums[i] {
+                Sum::Own => k = Acc::rigid(b, ws.kin[i].w, ws.kin[i].v),
+                Sum::Next => k.add(&Acc::rigid(b, ws.kin[i].w, ws.kin[i].v)),
+                Sum::Several => k = ws.acc[i],
+            }
+            inward::<T, HYBRID>(m, ws, (i, &mut k), (q, v), tau);
+            if b.parent != 0 && ws.sums[b.parent] == Sum::Several {
+                ws.acc[b.parent].add(&k);
+            }
         }
     }
     ws.start(gravity);
@@ -198,83 +239,81 @@ pub(crate) fn velocities<T: Real>(m: &Model, ws: &mut Workspace<T>, q: &[T], v: 
 
 /// Frame and velocity of a body, given its parent's.
 #[inline(always)]
-fn moved<T: Real>(b: &Body, q: &[T], v: &[T], parent: &Kin<T>) -> Kin<T> {
+pub(super) fn moved<T: Real>(b: &Body, q: &[T], v: &[T], parent: &Kin<T>) -> Kin<T> {
     if b.joint == JointType::Revolute {
-        let r = turned_z(&M3::of(&b.tree_r), q[b.q].sin_cos());
-        let mut w = r.tv(parent.w);
-        w.z += v[b.v];
-        return Kin { r, w, v: r.tv(parent.w.cross_add(V3::of(b.tree_p), parent.v)) };
+        return turned((&M3::of(&b.tree_r), V3::of(b.tree_p)), (q[b.q], v[b.v]), (parent.w, parent.v));
     }
     let (r, p) = joint_transform(b, q);
     let own = joint_velocity(b, q, v);
     Kin { r, w: r.tv(parent.w) + own.a, v: r.tv(parent.w.cross_add(p, parent.v)) + own.l }
 }
 
-/// Second pass, one body: eliminate its joint, hand what remains to the parent.
+/// Second pass, one body: eliminate its joint from what it has collected; that becomes what its parent gets, unless that is
+/// the world.
 #[inline(always)]
-fn inward<T: Real, const HYBRID: bool>(m: &Model, ws: &mut Workspace<T>, i: usize, (q, v): (&[T], &[T]), tau: &[T]) {
+pub(super) fn inward<T: Real, const HYBRID: bool>(
+    m: &Model,
+    ws: &mut Workspace<T>,
+    (i, k): (usize, &mut Acc<T>),
+    (q, v): (&[T], &[T]),
+    tau: &[T],
+) {
     let b = &m.bodies[i];
     let kin = ws.kin[i];
-    let mut k = ws.acc[i];
     if b.joint == JointType::Floating {
         let t = |n: usize| if HYBRID { ws.dofs[b.v + n].tau } else { tau[b.v + n] };
         let own = [t(0), t(1), t(2), t(3), t(4), t(5)];
-        eliminate_floating(&k, own, &mut ws.dof[b.v..b.v + 6]);
-        hand_over_floating(m, ws, i, own, q);
+        eliminate_floating(k, own, &mut ws.dof[b.v..b.v + 6]);
+        if b.parent != 0 {
+            *k = hand_over_floating(b, &kin, own, q);
+        }
         return;
     }
     if b.joint == JointType::Revolute && (!HYBRID || ws.dofs[b.v].plain) {
         let t = if HYBRID { ws.dofs[b.v].tau } else { tau[b.v] };
         if b.parent == 0 {
-            revolute_root(&k, (&mut ws.dof[b.v], t));
+            revolute_root(k, (&mut ws.dof[b.v], t));
         } else {
-            let given = revolute(&k, b, &kin, v[b.v], (&mut ws.dof[b.v], t));
-            ws.acc[b.parent].add(&given);
+            *k = revolute(k, V3::of(b.tree_p), &kin, v[b.v], (&mut ws.dof[b.v], t));
         }
         return;
     }
     let c = bias(b, q, v, (kin.w, kin.v));
     match b.joint {
-        JointType::Revolute => eliminate_axis(&mut k, axis_z(), &mut ws.dof[b.v], &ws.dofs[b.v]),
+        JointType::Revolute => eliminate_axis(k, axis_z(), &mut ws.dof[b.v], &ws.dofs[b.v]),
         JointType::Prismatic => {
             let input = scalar_input::<T, HYBRID>(ws, tau, b.v);
-            eliminate_linear_z(&mut k, &mut ws.dof[b.v], &input);
+            eliminate_linear_z(k, &mut ws.dof[b.v], &input);
         }
         JointType::Universal => {
             let (first, second) =
                 (scalar_input::<T, HYBRID>(ws, tau, b.v), scalar_input::<T, HYBRID>(ws, tau, b.v + 1));
-            eliminate_axis(&mut k, axis_z(), &mut ws.dof[b.v + 1], &second);
-            eliminate_axis(&mut k, universal_axis(q[b.q + 1].sin_cos()), &mut ws.dof[b.v], &first);
+            eliminate_axis(k, axis_z(), &mut ws.dof[b.v + 1], &second);
+            eliminate_axis(k, universal_axis(q[b.q + 1].sin_cos()), &mut ws.dof[b.v], &first);
         }
         JointType::Spherical | JointType::Floating => {
             if !HYBRID {
                 ws.ball_in[b.ball] = BallIn { tau: V3::new(tau[b.v], tau[b.v + 1], tau[b.v + 2]), ..BallIn::default() };
             }
-            eliminate_ball(&mut k, &mut ws.balls[b.ball], &ws.ball_in[b.ball]);
+            eliminate_ball(k, &mut ws.balls[b.ball], &ws.ball_in[b.ball]);
         }
     }
     if b.parent != 0 {
         k.push(c);
-        let (r, p) = (kin.r, joint_transform_p(b, q));
-        ws.acc[b.parent].add(&k.to_parent(&r, p));
+        *k = k.to_parent(&kin.r, joint_transform_p(b, q));
     }
 }
 
 /// A floating joint hands its own force, and no inertia, to the parent.
 #[inline(always)]
-fn hand_over_floating<T: Real>(m: &Model, ws: &mut Workspace<T>, i: usize, own: [T; 6], q: &[T]) {
-    let b = &m.bodies[i];
-    if b.parent == 0 {
-        return;
-    }
+fn hand_over_floating<T: Real>(b: &Body, kin: &Kin<T>, own: [T; 6], q: &[T]) -> Acc<T> {
     let force = Acc { ia: Art::default(), n: V3::new(own[0], own[1], own[2]), f: V3::new(own[3], own[4], own[5]) };
-    let (r, p) = (ws.kin[i].r, joint_transform_p(b, q));
-    ws.acc[b.parent].add(&force.to_parent(&r, p));
+    force.to_parent(&kin.r, joint_transform_p(b, q))
 }
 
 /// Third pass, one body: accelerations, from the world outwards.
 #[inline(always)]
-fn outward<T: Real, const HYBRID: bool>(
+pub(super) fn outward<T: Real, const HYBRID: bool>(
     m: &Model,
     ws: &mut Workspace<T>,
     i: usize,
@@ -285,11 +324,7 @@ fn outward<T: Real, const HYBRID: bool>(
     let kin = ws.kin[i];
     let parent = ws.kin[b.parent];
     if b.joint == JointType::Revolute {
-        let s = v[b.v];
-        let mut a = kin.r.tv(parent.w);
-        let mut l = kin.r.tv(parent.w.cross_add(V3::of(b.tree_p), parent.v));
-        (a.x, a.y) = (kin.w.y.mad(s, a.x), (-kin.w.x).mad(s, a.y));
-        (l.x, l.y) = (kin.v.y.mad(s, l.x), (-kin.v.x).mad(s, l.y));
+        let (mut a, l) = turned_outward(&kin, V3::of(b.tree_p), v[b.v], (parent.w, parent.v));
         a.z += scalar_out::<T, HYBRID>(ws, b.v, (a, l), qdd);
         (ws.kin[i].w, ws.kin[i].v) = (a, l);
         return;
@@ -353,11 +388,6 @@ pub(crate) fn joint_transform_p<T: Real>(b: &Body, q: &[T]) -> V3<T> {
         JointType::Floating => M3::of(&b.tree_r).mv(V3::new(q[b.q], q[b.q + 1], q[b.q + 2])) + V3::of(b.tree_p),
         _ => V3::of(b.tree_p),
     }
-}
-
-#[inline(always)]
-fn axis_z<T: Real>() -> V3<T> {
-    V3::new(T::of(0.0), T::of(0.0), T::of(1.0))
 }
 
 #[inline(always)]

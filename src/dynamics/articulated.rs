@@ -1,7 +1,7 @@
 //! Articulated-body inertias: their sums, shifts and rotations.
 
 use crate::math::{M3, Real, S3, V3};
-use crate::model::Body;
+use crate::model::{Body, JointType, Model};
 
 /// Articulated inertia `[J H; Hᵀ M]` about the body's origin: (torque, force) per (angular, linear) acceleration.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,7 +41,13 @@ impl<T: Real> Acc<T> {
     /// A rigid body's own inertia and its velocity-dependent bias `v ×* I v`.
     #[inline(always)]
     pub fn rigid(b: &Body, w: V3<T>, v: V3<T>) -> Self {
-        let (o, m, mc, j) = (T::of(0.0), T::of(b.mass), V3::<T>::of(b.mc), S3::of(&b.inertia));
+        Self::of_mass((T::of(b.mass), V3::of(b.mc), S3::of(&b.inertia)), w, v)
+    }
+
+    /// The same of a mass, its first moment and its inertia about the body's origin.
+    #[inline(always)]
+    pub fn of_mass((m, mc, j): (T, V3<T>, S3<T>), w: V3<T>, v: V3<T>) -> Self {
+        let o = T::of(0.0);
         let h = M3::rows(V3::new(o, -mc.z, mc.y), V3::new(mc.z, o, -mc.x), V3::new(-mc.y, mc.x, o));
         let ia = Art { j, h, m: S3 { xx: m, xy: o, xz: o, yy: m, yz: o, zz: m } };
         let turning = w.cross(mc);
@@ -98,4 +104,28 @@ impl<T: Real> Art<T> {
         self.h.r[2] = ul.mad(-a.z, self.h.r[2]);
         self.m.sub_outer(l, ul);
     }
+}
+
+/// Where what a body collects comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sum {
+    /// Nothing hangs on it.
+    Own,
+    /// Its only child is the next body.
+    Next,
+    /// It is added up in memory: of several children, where it is read after the pass (floating), or where damping is added.
+    Several,
+}
+
+/// For every body of a model.
+pub(crate) fn sums(m: &Model) -> Vec<Sum> {
+    let mut children = vec![0; m.bodies.len()];
+    m.bodies.iter().skip(1).for_each(|b| children[b.parent] += 1);
+    let of = |i: usize| match children[i] {
+        _ if i == 0 || !m.dampings.is_empty() || m.bodies[i].joint == JointType::Floating => Sum::Several,
+        0 => Sum::Own,
+        1 if m.bodies.get(i + 1).is_some_and(|b| b.parent == i) => Sum::Next,
+        _ => Sum::Several,
+    };
+    (0..m.bodies.len()).map(of).collect()
 }

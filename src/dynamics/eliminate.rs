@@ -4,7 +4,6 @@ use super::DofIn;
 use super::aba::{Dof, Kin};
 use super::articulated::{Acc, Art};
 use crate::math::{M3, Real, S3, V3};
-use crate::model::Body;
 
 /// Eliminates a rotation about `s`, a direction in the child frame.
 #[inline(always)]
@@ -41,14 +40,14 @@ pub(crate) fn revolute_root<T: Real>(k: &Acc<T>, (d, tau): (&mut Dof<T>, T)) {
     *d = Dof { ua, ul, d: di, x: (tau - k.n.z) * di, own: k.n.z };
 }
 
-/// Eliminates a free rotation about z without added inertia, and moves to the parent. The row and column of J that belong
+/// Eliminates a free rotation about z without added inertia, and moves to the parent, in whose frame the origin is at `p`. The row and column of J that belong
 /// to z vanish, and so does H's row: they are left out.
 #[inline(always)]
-pub(crate) fn revolute<T: Real>(k: &Acc<T>, b: &Body, kin: &Kin<T>, s: T, (d, tau): (&mut Dof<T>, T)) -> Acc<T> {
+pub(crate) fn revolute<T: Real>(k: &Acc<T>, p: V3<T>, kin: &Kin<T>, s: T, (d, tau): (&mut Dof<T>, T)) -> Acc<T> {
     revolute_root(k, (d, tau));
     let Dof { ua, ul, d: di, x, .. } = *d;
     let Art { j, h, mut m } = k.ia;
-    let (r, p) = (&kin.r, V3::of(b.tree_p));
+    let r = &kin.r;
     let (ax, ay, l) = (ua.x * di, ua.y * di, ul * di);
     let (jxx, jxy, jyy) = ((-ax).mad(ua.x, j.xx), (-ax).mad(ua.y, j.xy), (-ay).mad(ua.y, j.yy));
     let (h0, h1) = (ul.mad(-ax, h.r[0]), ul.mad(-ay, h.r[1]));

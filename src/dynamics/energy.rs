@@ -38,7 +38,7 @@ pub fn body_energy(m: &Model, k: &Kinematics, gravity: [f64; 3], body: usize) ->
     let (b, w, v) = (&m.bodies[body], k.w[body], k.v[body]);
     let linear = v * b.mass + w.cross(b.mc);
     let angular = S3::mv(&b.inertia, w) + b.mc.cross(v);
-    let g = V3::new(gravity[0], gravity[1], gravity[2]);
+    let g = V3::from(gravity);
     Energy {
         kinetic: 0.5 * (w.dot(angular) + v.dot(linear)),
         potential: -g.dot(k.r[body].mv(b.mc) + k.p[body] * b.mass),

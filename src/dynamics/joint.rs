@@ -1,5 +1,6 @@
 //! What a joint does to frames and velocities, one match per question.
 
+use super::aba::Kin;
 use super::articulated::Spatial;
 use crate::math::{M3, Real, V3};
 use crate::model::{Body, JointType, rotation};
@@ -68,13 +69,20 @@ pub(crate) fn joint_velocity<T: Real>(b: &Body, q: &[T], v: &[T]) -> Spatial<T> 
     }
 }
 
+/// [`bias`] of a joint that turns about z with speed `s`.
+#[inline(always)]
+pub(crate) fn turning_bias<T: Real>(s: T, (w, l): (V3<T>, V3<T>)) -> Spatial<T> {
+    let o = T::of(0.0);
+    Spatial { a: V3::new(w.y * s, -(w.x * s), o), l: V3::new(l.y * s, -(l.x * s), o) }
+}
+
 /// The velocity-product acceleration `c = v × S q̇ + Ṡ q̇` in the child frame, with `(w, l)` the body's velocity.
 #[inline(always)]
 pub(crate) fn bias<T: Real>(b: &Body, q: &[T], v: &[T], (w, l): (V3<T>, V3<T>)) -> Spatial<T> {
     let o = T::of(0.0);
     let s = v[b.v];
     match b.joint {
-        JointType::Revolute => Spatial { a: V3::new(w.y * s, -(w.x * s), o), l: V3::new(l.y * s, -(l.x * s), o) },
+        JointType::Revolute => turning_bias(s, (w, l)),
         JointType::Prismatic => Spatial { a: V3::default(), l: V3::new(w.y * s, -(w.x * s), o) },
         JointType::Universal => {
             let first = universal_axis(q[b.q + 1].sin_cos());
@@ -88,4 +96,28 @@ pub(crate) fn bias<T: Real>(b: &Body, q: &[T], v: &[T], (w, l): (V3<T>, V3<T>)) 
             Spatial { a: w.cross(own.a), l: w.cross_add(own.l, l.cross(own.a)) }
         }
     }
+}
+
+/// Frame and velocity of a body that turns about z: its frame at 0, its angle and speed, its parent's velocity.
+#[inline(always)]
+pub(super) fn turned<T: Real>((r, p): (&M3<T>, V3<T>), (q, s): (T, T), (pw, pv): (V3<T>, V3<T>)) -> Kin<T> {
+    let r = turned_z(r, q.sin_cos());
+    let mut w = r.tv(pw);
+    w.z += s;
+    Kin { r, w, v: r.tv(pw.cross_add(p, pv)) }
+}
+
+/// Acceleration of a body that turns about z with speed `s`, without that of its joint; its parent's acceleration last.
+#[inline(always)]
+pub(super) fn turned_outward<T: Real>(kin: &Kin<T>, p: V3<T>, s: T, (pa, pl): (V3<T>, V3<T>)) -> (V3<T>, V3<T>) {
+    let mut a = kin.r.tv(pa);
+    let mut l = kin.r.tv(pa.cross_add(p, pl));
+    (a.x, a.y) = (kin.w.y.mad(s, a.x), (-kin.w.x).mad(s, a.y));
+    (l.x, l.y) = (kin.v.y.mad(s, l.x), (-kin.v.x).mad(s, l.y));
+    (a, l)
+}
+
+#[inline(always)]
+pub(super) fn axis_z<T: Real>() -> V3<T> {
+    V3::new(T::of(0.0), T::of(0.0), T::of(1.0))
 }

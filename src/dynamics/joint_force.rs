@@ -98,7 +98,7 @@ impl JointForces {
     /// Force on the body through its joint in the step of `h` seconds between the two states under gravity (m/s²), along
     /// the axes of the world, N. 0 for a floating joint within the tree, which transmits nothing.
     pub fn force(&self, body: usize, gravity: [f64; 3], h: f64) -> V3<f64> {
-        let g = V3::new(gravity[0], gravity[1], gravity[2]);
+        let g = V3::from(gravity);
         (self.after[body] - self.before[body]) * (1.0 / h) - g * self.mass[body] - self.outside[body]
     }
 }

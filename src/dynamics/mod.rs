@@ -7,6 +7,7 @@
 mod aba;
 mod articulated;
 mod ball;
+mod batch;
 mod check;
 mod columns;
 mod crba;
@@ -20,11 +21,13 @@ mod joint;
 mod joint_force;
 mod kinematics;
 mod layout;
+mod limbs;
 mod response;
 mod rnea;
 
 pub use aba::{Dof, Workspace, aba, aba_fused, aba_hybrid};
 pub use ball::{BallIn, BallLock};
+pub use batch::{AbaBatch, LaneKind};
 pub use check::singular_axes;
 pub use columns::Columns;
 pub use crba::crba;
@@ -36,6 +39,7 @@ pub(crate) use joint::universal_axis;
 pub use joint_force::{JointForces, Outside};
 pub use kinematics::{Kinematics, Posed, body_pose, kinematics, kinematics_of, link_pose, link_twist};
 pub use layout::{CHUNK, Layout};
+pub use limbs::{Limbs, aba_limbs};
 pub use response::{Mobility, Push, Response};
 pub use rnea::rnea;
 

@@ -16,27 +16,16 @@ use crate::model::{AxisSlot, Body, EulerFrame, JointType, LinkFrame, Model, Soft
 pub fn come_apart(m: &Model, s: &State, body: usize) -> (Model, State) {
     let mut k = Kinematics::new(m);
     kinematics(m, &mut k, &s.q, &s.v);
-    let cut = Cut::new(m, body);
-    let mut left = Model { nq: 0, nv: 0, balls: 0, ..m.clone() };
-    left.bodies = cut.bodies(&mut left);
-    let state = cut.state(&left, s, &k);
-    left.eulers = m.eulers.iter().filter_map(|e| cut.euler(&left, e)).collect();
-    left.softs = m.softs.iter().filter_map(|soft| cut.soft(&left, soft)).collect();
-    left.dampings.retain_mut(|d| cut.index[d.body].map(|new| d.body = new).is_some());
-    left.breakables.retain_mut(|b| cut.intact(b.body).map(|new| b.body = new).is_some());
-    for axis in 0..m.axes.len() {
-        left.axes[axis].slot = cut.slot(&left, axis, s);
-    }
-    let apart = |axis: usize| matches!(left.axes[axis].slot, AxisSlot::Apart { .. });
-    left.couplings.retain(|c| !apart(c.follower) && !apart(c.leader));
-    cut.reseat(&mut left, s, &k);
-    (left, state)
+    Cut::new(m, body).made(s, &k)
 }
 
+/// No body.
+const NONE: usize = usize::MAX;
+
 /// Which bodies stay, and where they are afterwards.
-struct Cut<'a> {
+pub(super) struct Cut<'a> {
     m: &'a Model,
-    /// The one whose joint comes apart.
+    /// The one whose joint comes apart; [`NONE`]: no joint does.
     body: usize,
     /// Per body: its index afterwards.
     index: Vec<Option<usize>>,
@@ -50,12 +39,30 @@ impl<'a> Cut<'a> {
             stays[i] |= b.mass > 0.0 || b.inertia.xx + b.inertia.yy + b.inertia.zz > 0.0;
             stays[b.parent] |= stays[i] && i != body;
         }
-        let mut count = 0;
-        let number = |stays: &bool| {
-            count += usize::from(*stays);
-            stays.then(|| count - 1)
-        };
-        Self { m, body, index: stays.iter().map(number).collect() }
+        Self { m, body, index: numbers(&stays) }
+    }
+
+    /// The bodies that do not stay are gone, with their axes.
+    pub fn without(m: &'a Model, stays: &[bool]) -> Self {
+        Self { m, body: NONE, index: numbers(stays) }
+    }
+
+    /// The model afterwards and its state; `k` belongs to the state before.
+    pub fn made(&self, s: &State, k: &Kinematics) -> (Model, State) {
+        let mut left = Model { nq: 0, nv: 0, balls: 0, ..self.m.clone() };
+        left.bodies = self.bodies(&mut left);
+        let state = self.state(&left, s, k);
+        left.eulers = self.m.eulers.iter().filter_map(|e| self.euler(&left, e)).collect();
+        left.softs = self.m.softs.iter().filter_map(|soft| self.soft(&left, soft)).collect();
+        left.dampings.retain_mut(|d| self.index[d.body].map(|new| d.body = new).is_some());
+        left.breakables.retain_mut(|b| self.intact(b.body).map(|new| b.body = new).is_some());
+        for axis in 0..self.m.axes.len() {
+            left.axes[axis].slot = self.slot(&left, axis, s);
+        }
+        let apart = |axis: usize| matches!(left.axes[axis].slot, AxisSlot::Apart { .. });
+        left.couplings.retain(|c| !apart(c.follower) && !apart(c.leader));
+        self.reseat(&mut left, s, k);
+        (left, state)
     }
 
     /// Index afterwards of a body that stays and whose joint does not come apart.
@@ -161,6 +168,16 @@ impl<'a> Cut<'a> {
             }
         }
     }
+}
+
+/// Indices of what stays, in the same order.
+fn numbers(stays: &[bool]) -> Vec<Option<usize>> {
+    let mut count = 0;
+    let number = |stays: &bool| {
+        count += usize::from(*stays);
+        stays.then(|| count - 1)
+    };
+    stays.iter().map(number).collect()
 }
 
 /// The body as a floating one on the world.

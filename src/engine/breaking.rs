@@ -38,7 +38,7 @@ impl BreakWatch {
     pub fn end(&mut self, m: &Model, state: &State, s: &StepSettings, contacts: &[V3<f64>]) -> &[Overload] {
         let scheme = match s.integrator {
             Integrator::SemiImplicitEuler => Scheme::Start,
-            Integrator::ImplicitMidpoint | Integrator::Rk4 => Scheme::Middle,
+            Integrator::ImplicitMidpoint | Integrator::Rk4 | Integrator::Extrapolation => Scheme::Middle,
         };
         let damping = s.effects.body_damping.then_some((s.h, scheme));
         self.forces.end(m, (&state.q, &state.v), &Outside { contacts, damping });

@@ -6,40 +6,64 @@ use crate::dynamics::{Scheme, exponential_step, move_coordinates, write_damping}
 use crate::model::Model;
 use crate::solver::{AxisCommand, StepStart, write_softs};
 
+/// A whirl of which h |λ| is more than this grows by more than 0.2 % per step.
+const WHIRLS: f64 = 0.0625;
+
+/// How a piece ended.
+enum End {
+    Done,
+    /// Too long, and it may be divided; the state is as before.
+    TooFast,
+    /// The rule would make energy of it; the state is as before.
+    Whirls,
+}
+
 impl Rbx {
-    /// One step of `s.h`, in halves, quarters … where bodies might pass through each other.
-    pub(super) fn euler(&mut self, m: &Model, commands: &[AxisCommand], s: &StepSettings, report: &mut StepReport) {
+    /// One step of `s.h`, in halves, quarters … where bodies might pass through each other. False, with the state as before, if the rule
+    /// would make energy of it.
+    pub(super) fn euler(
+        &mut self,
+        m: &Model,
+        commands: &[AxisCommand],
+        s: &StepSettings,
+        report: &mut StepReport,
+    ) -> bool {
         let pieces = 1u32 << DEEPEST;
         let (mut done, mut depth) = (0, 0);
         while done < pieces {
             let piece = pieces >> depth;
             let part = StepSettings { h: s.h * f64::from(piece) / f64::from(pieces), ..*s };
-            if !self.euler_piece(m, commands, (&part, depth < DEEPEST), report) {
-                depth += 1;
-                report.divided = true;
-                continue;
+            match self.euler_piece(m, commands, (&part, depth < DEEPEST), report) {
+                End::Done => {}
+                End::TooFast => {
+                    depth += 1;
+                    report.divided = true;
+                    continue;
+                }
+                // Nothing has been done yet.
+                End::Whirls => return false,
             }
             done += piece;
             while depth > 0 && done % (pieces >> (depth - 1)) == 0 {
                 depth -= 1;
             }
         }
+        true
     }
 
-    /// False, with the state as before, if the piece is too long and may be divided.
     fn euler_piece(
         &mut self,
         m: &Model,
         commands: &[AxisCommand],
         (s, may_divide): (&StepSettings, bool),
         report: &mut StepReport,
-    ) -> bool {
+    ) -> End {
         let at = self.state.as_ref();
         let start = StepStart { state: at, commands, h: s.h, whole: self.whole_step, mean: false, sweeps: s.passes };
         report.at_pole |= self.axes.prepare(m, &start, s.effects);
         if self.axes.is_fast() {
             if may_divide {
-                return false;
+                return End::TooFast;
             }
             report.fast += 1;
         }
@@ -48,7 +72,12 @@ impl Rbx {
         let start = StepStart { state: at, ..start };
         write_softs(m, &mut self.ws, &start, s.effects);
         write_damping(m, &mut self.ws, (s.h, Scheme::Start), s.effects.body_damping);
-        report.unsettled |= !self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
+        let settled = self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
+        if self.whirls(s.h) {
+            return End::Whirls;
+        }
+        let at = self.state.as_ref();
+        report.unsettled |= !settled;
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
         self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
@@ -65,6 +94,20 @@ impl Rbx {
         let piece = std::mem::take(&mut self.piece);
         self.pay(m, &piece, s.gravity, report);
         self.piece = piece;
-        true
+        End::Done
+    }
+
+    /// Would the rule make energy of a whole step with these accelerations? Contacts are no whirl, and neither are laws that change, unless
+    /// they throw velocities about.
+    fn whirls(&mut self, h: f64) -> bool {
+        let Some(whirl) = &mut self.whirl else { return false };
+        if self.axes.touches() {
+            whirl.forget();
+            return false;
+        }
+        let least = if self.axes.is_calm() { WHIRLS } else { f64::INFINITY };
+        let grows = h == self.whole_step && whirl.grows(&self.qdd, &self.state.v, (h, least));
+        whirl.note(&self.qdd);
+        grows
     }
 }

@@ -27,7 +27,7 @@ impl Forest {
 }
 
 /// Sets of trees that hang together, by contacts. Makes its memory once.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Islands {
     parent: Vec<usize>,
 }

@@ -2,7 +2,7 @@
 
 use super::{EngineKind, Integrator};
 use crate::description::{Description, Finding, Position, Severity};
-use crate::model::{LinkFrame, LinkInfo, Model};
+use crate::model::{JointType, LinkFrame, LinkInfo, Model};
 use crate::shape::ContactForm;
 
 /// An item of a model that an engine does not honour.
@@ -17,6 +17,10 @@ pub struct Shortfall {
 }
 
 impl Shortfall {
+    pub(super) fn new(element: String, item: &str, instead: &str) -> Self {
+        Self { element, item: item.into(), instead: instead.into() }
+    }
+
     /// What is said of an engine: `the engine bullet does not honour …`.
     pub fn of(&self, kind: EngineKind) -> String {
         format!("the engine {} does not honour {self}", kind.name())
@@ -36,7 +40,7 @@ pub fn shortfalls(kind: EngineKind, m: &Model) -> Vec<Shortfall> {
     let can = kind.capabilities();
     let mut found = vec![];
     let mut tell = |element: String, item: &str, instead: &str| {
-        found.push(Shortfall { element, item: item.into(), instead: instead.into() });
+        found.push(Shortfall::new(element, item, instead));
     };
     let joint = |name: &str| format!("joint '{name}'");
     if can.joints && !can.couplings {
@@ -84,11 +88,29 @@ pub fn shape_name(kind: EngineKind, form: &ContactForm) -> Option<String> {
     (kind == EngineKind::Rapier).then(|| super::rapier::shape_name(form))
 }
 
+/// What an engine has for a joint (tables 6-12 … 6-20).
+pub fn constraint_name(kind: EngineKind, joint: JointType) -> &'static str {
+    use JointType as J;
+    match (kind, joint) {
+        (_, J::Floating) => "none: it floats",
+        (EngineKind::Rbx, J::Revolute) => "revolute, a coordinate of its own",
+        (EngineKind::Rbx, J::Prismatic) => "prismatic, a coordinate of its own",
+        (EngineKind::Rbx, J::Universal) => "cardan, two coordinates",
+        (EngineKind::Rbx, J::Spherical) => "spherical, a quaternion",
+        (EngineKind::Rapier, J::Revolute) => "impulse joint, 5 axes locked",
+        (EngineKind::Rapier, J::Prismatic) => "impulse joint, 5 axes locked",
+        (EngineKind::Rapier, J::Universal) => "impulse joints, 3 axes and 1 locked",
+        (EngineKind::Rapier, J::Spherical) => "impulse joint, 3 axes locked",
+        (EngineKind::Bullet, _) => "btGeneric6DofSpring2Constraint",
+        (EngineKind::Physx, _) => "none: links are left out",
+    }
+}
+
 /// An integrator that was chosen, and that an engine with one of its own does not use.
 pub fn unused_integrator(kind: EngineKind, integrator: Integrator) -> Option<Shortfall> {
     let unused = !kind.capabilities().integrators && integrator != Integrator::default();
     let item = format!("integrator {}", integrator.name());
-    unused.then(|| Shortfall { element: "the world".into(), item, instead: "it has its own".into() })
+    unused.then(|| Shortfall::new("the world".into(), &item, "it has its own"))
 }
 
 /// The first of each kind (the same item, the same instead), and how many others there are.

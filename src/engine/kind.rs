@@ -4,7 +4,8 @@ use super::{Engine, Rapier, Rbx, State};
 use crate::model::Model;
 
 /// A dynamics engine, chosen at run time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum EngineKind {
     /// Ours: reduced coordinates, every row in one solver.
     #[default]

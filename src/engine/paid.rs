@@ -47,9 +47,9 @@ impl Rbx {
     /// Ends a piece of a step that began with the state `start` (of `Contacts::start`).
     /// Returns what even standing still does not pay for: bodies that were lifted out of each other, J.
     pub(super) fn pay(&mut self, m: &Model, start: &State, gravity: [f64; 3], report: &mut StepReport) -> f64 {
-        let acts = self.axes.contacts().is_some_and(|c| c.acting_bodies().next().is_some());
-        let acts = acts || self.axes.stopped().contains(&true);
-        let Some(mut paid) = self.paid.take_if(|_| acts) else { return 0.0 };
+        let acts = || self.axes.contacts().is_some_and(|c| c.acting_bodies().next().is_some());
+        let stopped = || (0..m.axes.len()).any(|axis| self.axes.is_stopped(axis));
+        let Some(mut paid) = self.paid.take_if(|_| acts() || stopped()) else { return 0.0 };
         self.join_touched(&mut paid);
         if let Some(contacts) = self.axes.contacts_mut() {
             contacts.arrive(m, &self.state.q, &self.state.v);
@@ -84,7 +84,7 @@ impl Rbx {
         let Some(paid) = &mut self.paid else { return };
         let k = &mut paid.kinematics;
         kinematics(m, k, q.unwrap_or(&self.state.q), &self.lift);
-        let g = V3::new(gravity[0], gravity[1], gravity[2]);
+        let g = V3::from(gravity);
         let raised: f64 = (1..m.bodies.len()).map(|body| -h * g.dot(body_momentum(m, k, body))).sum();
         self.axes.books.work.contacts -= raised;
     }
@@ -93,8 +93,10 @@ impl Rbx {
     fn join_touched(&self, paid: &mut Paid) {
         paid.accounts.fill(Account { share: 1.0, ..Account::default() });
         paid.islands.part();
-        for (stopped, tree) in self.axes.stopped().iter().zip(&paid.forest.of_axis) {
-            if *stopped && let Some(account) = paid.accounts.get_mut(*tree) {
+        for (axis, tree) in paid.forest.of_axis.iter().enumerate() {
+            if self.axes.is_stopped(axis)
+                && let Some(account) = paid.accounts.get_mut(*tree)
+            {
                 account.touched = true;
             }
         }

@@ -1,48 +1,16 @@
 //! rbx: reduced coordinates, one step at a time.
 
+use super::Integrator;
+use super::extrapolation::Extrapolation;
 use super::midpoint::Midpoint;
 use super::paid::Paid;
 use super::rk4::Stages;
 use super::sleep::Sleep;
+use super::whirl::Whirl;
 use crate::dynamics::{Kinematics, Scheme, Workspace, kinematics, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
 use crate::solver::{AxisCommand, AxisSet, StateRef, StepStart};
-
-/// How the state is advanced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Integrator {
-    /// Second order, the same forwards and backwards in time, so that the energy of free motion does not drift; damping,
-    /// servos, stops and friction implicit. It iterates; a step whose iteration does not contract is halved, and counted.
-    /// The default.
-    #[default]
-    ImplicitMidpoint,
-    /// First order; damping, servos, stops and friction implicit, the velocity products explicit.
-    SemiImplicitEuler,
-    /// Classical fourth order; axes that stand still stand. Steps in which an axis begins or ceases to stand (in its dry
-    /// friction, at a stop, at a servo's target), a servo is on its way, or a viscous term is stiffer than the step, are
-    /// made by the default instead, and counted.
-    Rk4,
-}
-
-impl Integrator {
-    /// Names for `--integrator` and the parameter `integrator`.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("implicit_midpoint", Self::ImplicitMidpoint),
-        ("semi_implicit_euler", Self::SemiImplicitEuler),
-        ("rk4", Self::Rk4),
-    ];
-
-    /// By name.
-    pub fn by_name(name: &str) -> Option<Self> {
-        Self::NAMES.iter().find(|(n, _)| *n == name).map(|(_, i)| *i)
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        Self::NAMES.iter().find(|(_, i)| *i == self).map_or("", |(n, _)| n)
-    }
-}
 
 /// State of one robot.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -86,6 +54,11 @@ impl State {
             }
             AxisSlot::Apart { position } => (position, 0.0),
         }
+    }
+
+    /// Positions of all axes, rad or m.
+    pub fn positions(&self, m: &Model) -> Vec<f64> {
+        (0..m.axes.len()).map(|axis| self.axis(m, axis).0).collect()
     }
 
     /// Kinetic energy of rotors of these inertias (kg·m² or kg, per axis) with their speeds relative to the joints, J.
@@ -208,12 +181,14 @@ pub struct StepSettings {
     pub passes: u32,
     /// Integrator.
     pub integrator: Integrator,
+    /// Error per second that the extrapolation method may make, relative to 1 rad, m, rad/s, m/s and the coordinate.
+    pub accuracy: f64,
 }
 
 /// What became of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepReport {
-    /// RK4 handed the step to the implicit midpoint rule.
+    /// RK4 handed the step to the implicit midpoint rule, or the extrapolation method its rest.
     pub fell_back: bool,
     /// The axis set did not settle within its passes.
     pub unsettled: bool,
@@ -260,16 +235,21 @@ pub struct Rbx {
     pub(super) sleep: Option<Sleep>,
     /// The step, s, of which a halved one is a part.
     pub(super) whole_step: f64,
-    midpoint: Option<Midpoint>,
+    /// `None` if the integrator has no need of it.
+    pub(super) whirl: Option<Whirl>,
+    pub(super) midpoint: Option<Midpoint>,
     stages: Option<Stages>,
+    pub(super) extrapolation: Option<Box<Extrapolation>>,
 }
 
 impl Rbx {
     /// At the initial state.
     pub fn new(m: &Model) -> Self {
         let (state, axes) = (State::initial(m), AxisSet::new(m));
+        let mut ws = Workspace::new(m);
+        ws.put_side_by_side(m);
         Self {
-            ws: Workspace::new(m),
+            ws,
             qdd: vec![0.0; m.nv],
             before: state.clone(),
             piece: state.clone(),
@@ -279,16 +259,21 @@ impl Rbx {
             axes,
             sleep: Sleep::new(m),
             whole_step: 0.0,
+            whirl: None,
             midpoint: None,
             stages: None,
+            extrapolation: None,
             state,
         }
     }
 
     /// Makes the memory that an integrator needs, so that steps make none.
     pub fn prepare(&mut self, m: &Model, integrator: Integrator) {
-        self.midpoint = (integrator != Integrator::SemiImplicitEuler).then(|| Midpoint::new(m));
+        self.midpoint = Some(Midpoint::new(m));
+        self.whirl = matches!(integrator, Integrator::SemiImplicitEuler | Integrator::Rk4).then(|| Whirl::new(m.nv));
         self.stages = (integrator == Integrator::Rk4).then(|| Stages::new(m));
+        let extrapolates = integrator == Integrator::Extrapolation;
+        self.extrapolation = extrapolates.then(|| Box::new(Extrapolation::new(m)));
     }
 
     /// Takes over a state; the steps before it are forgotten.
@@ -304,6 +289,12 @@ impl Rbx {
         if let Some(midpoint) = &mut self.midpoint {
             midpoint.forget();
         }
+        if let Some(whirl) = &mut self.whirl {
+            whirl.forget();
+        }
+        if let Some(extrapolation) = &mut self.extrapolation {
+            extrapolation.forget();
+        }
     }
 
     /// One step: the laws of the axes, then the integrator; a state that is not finite is not taken.
@@ -316,16 +307,19 @@ impl Rbx {
         self.whole_step = s.h;
         self.axes.open_books();
         let tempered = self.axes.tempered();
-        let explicit = s.integrator == Integrator::Rk4;
-        if !(explicit && self.rk4(m, commands, s, &mut report)) {
-            report.fell_back = explicit;
-            match self.midpoint.take() {
-                Some(mut midpoint) => {
-                    self.midpoint_step(m, &mut midpoint, commands, s, &mut report);
-                    self.midpoint = Some(midpoint);
-                }
-                None => self.euler(m, commands, s, &mut report),
+        let done = match s.integrator {
+            Integrator::ImplicitMidpoint => false,
+            Integrator::SemiImplicitEuler => self.euler(m, commands, s, &mut report),
+            Integrator::Rk4 => self.rk4(m, commands, s, &mut report),
+            Integrator::Extrapolation => {
+                self.extrapolated_step(m, commands, s, &mut report);
+                true
             }
+        };
+        if let Some(mut midpoint) = self.midpoint.take_if(|_| !done) {
+            report.fell_back = s.integrator != Integrator::ImplicitMidpoint;
+            self.midpoint_step(m, &mut midpoint, commands, s, &mut report);
+            self.midpoint = Some(midpoint);
         }
         if !self.state.finite() {
             self.state.copy_from(&self.before);

@@ -36,6 +36,9 @@ impl Rbx {
             aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), s.gravity, &mut self.qdd);
             let at = CouplingStage { h: s.h, first: stage == 0 };
             let coupled = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), at, &mut self.qdd);
+            if self.whirls_in(stage, s.h) {
+                return false;
+            }
             let soft_enough = stage > 0 || self.axes.is_soft_enough(m, &self.ws, &self.state.q, s.h);
             if !coupled || !soft_enough || !self.axes.stage_fits(m, &self.ws, &self.qdd) {
                 return false;
@@ -56,7 +59,22 @@ impl Rbx {
         self.axes.finish_smooth(m, &self.ws, (self.state.as_ref(), s.h), &self.qdd);
         true
     }
+
+    /// Do the accelerations of the first three stages change faster than the rule can follow?
+    fn whirls_in(&mut self, stage: usize, h: f64) -> bool {
+        let Some(whirl) = &mut self.whirl else { return false };
+        match stage {
+            0 => whirl.note(&self.qdd),
+            1 => whirl.follow(&self.qdd),
+            2 => return whirl.turns(&self.qdd, &self.state.v, (h, WHIRLS)),
+            _ => {}
+        }
+        false
+    }
 }
+
+/// RK4 is stable up to h |λ| = 2.8 and has lost its order long before; the changes of its stages are h / 2 apart.
+const WHIRLS: f64 = 0.5;
 
 fn go(x: &mut [f64], from: &[f64], h: f64, rates: &[f64]) {
     for (x, (x0, r)) in x.iter_mut().zip(from.iter().zip(rates)) {

@@ -1,13 +1,19 @@
 //! Aliases over nalgebra's f64 types, frames, and the kernel's own small types.
 
 pub mod frames;
+mod lanes;
 mod real;
 mod sincos;
 mod small;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
+pub use lanes::{Lane, Lanes4};
 pub use real::{Fma, Real};
 pub use sincos::sin_cos;
 pub use small::{M3, S3, V3};
+#[cfg(target_arch = "x86_64")]
+pub use x86::{X4, X8};
 
 /// 3-vector.
 pub type Vec3 = nalgebra::Vector3<f64>;

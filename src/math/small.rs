@@ -250,6 +250,11 @@ impl<T: Real> AddAssign for S3<T> {
     }
 }
 
+impl From<[f64; 3]> for V3<f64> {
+    fn from([x, y, z]: [f64; 3]) -> Self {
+        Self::new(x, y, z)
+    }
+}
 impl From<crate::math::Vec3> for V3<f64> {
     fn from(v: crate::math::Vec3) -> Self {
         Self::new(v.x, v.y, v.z)

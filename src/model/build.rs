@@ -1,15 +1,13 @@
 //! Description + mass properties → Model.
 
+mod axis;
 mod soften;
 
 use super::chain::chains;
 use super::membership::memberships;
 use super::rig::rigs;
-use super::{
-    Axis, AxisKind, AxisSlot, Body, Deactivation, DriveLimits, Effects, EulerFrame, JointType, LinkFrame, LinkInfo,
-    Model, Softness,
-};
-use crate::description::{Description, Drive, DriveMode, GroupKind, Joint, JointKind, Link};
+use super::{AxisSlot, Body, Deactivation, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model, Softness};
+use crate::description::{Description, GroupKind, Joint, JointKind, Link};
 use crate::mass::MassProperties;
 use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
@@ -79,6 +77,7 @@ impl<'a> Builder<'a> {
             couplings: vec![],
             breakables: vec![],
             chains: chains(d),
+            joints: vec![],
             rigs: vec![],
             dampings: vec![],
             joined: vec![],
@@ -100,9 +99,12 @@ impl<'a> Builder<'a> {
                 fixed: false,
                 monitor: l.monitor,
                 mass: m.mass,
+                center: m.center,
+                inertia: m.inertia,
                 membership,
                 deactivation: deactivation(l),
                 frame: LinkFrame::OnBody { body: 0, offset: Pose::identity() },
+                removed: false,
             })
             .collect();
         let root = self.model.root_link;
@@ -323,9 +325,10 @@ impl<'a> Builder<'a> {
     fn collect_axes(&mut self) {
         for (k, j) in self.d.joints.iter().enumerate() {
             if let Some(slot) = self.slots.get(&k) {
-                self.model.axes.push(axis(j, *slot));
+                self.model.axes.push(axis::axis(j, *slot));
             }
         }
+        self.model.joints = super::joint_set::joint_sets(self.d, &self.model);
         self.model.rigs = rigs(self.d, &self.model);
         self.model.couplings = super::coupling::couplings(self.d, &self.model);
         self.model.dampings = super::damping::dampings(self.d, &self.model);
@@ -337,34 +340,6 @@ impl<'a> Builder<'a> {
 fn deactivation(link: &Link) -> Option<Deactivation> {
     let d = link.deactivate.as_ref().filter(|d| d.linear > 0.0 || d.angular > 0.0 || d.after > 0.0)?;
     Some(Deactivation { linear: d.linear, angular: d.angular, after: d.after })
-}
-
-fn axis(j: &Joint, slot: AxisSlot) -> Axis {
-    let limited = matches!(j.kind, JointKind::Revolute | JointKind::Prismatic);
-    let limit = j.limit.as_ref();
-    let range = limit.filter(|_| limited);
-    let drive = j.drive.as_ref();
-    Axis {
-        name: j.name.clone(),
-        kind: if j.kind == JointKind::Prismatic { AxisKind::Linear } else { AxisKind::Rotary },
-        slot,
-        lower: range.map_or(f64::NEG_INFINITY, |l| l.lower),
-        upper: range.map_or(f64::INFINITY, |l| l.upper),
-        stop: stop(j),
-        drive: DriveLimits::of(j),
-        damping: j.damping,
-        friction: j.friction,
-        mode: drive.map_or(DriveMode::Idle, |d: &Drive| d.mode),
-        switchable: drive.is_none_or(|d| d.switchable),
-    }
-}
-
-/// Share of a stop's penetration that one step takes back where no tag says it (ODE's default error reduction).
-const STOP_ERP: f64 = 0.2;
-
-fn stop(j: &Joint) -> Softness {
-    let c = j.constraint.as_ref();
-    Softness { erp: c.and_then(|c| c.stop_erp).unwrap_or(STOP_ERP), cfm: c.and_then(|c| c.stop_cfm).unwrap_or(0.0) }
 }
 
 fn world() -> Body {

@@ -14,6 +14,13 @@ pub struct BodyDamping {
     pub angular: f64,
 }
 
+impl BodyDamping {
+    /// What is left of the velocity of the centre of mass, and of the angular one, after h seconds: shares.
+    pub fn kept(&self, h: f64) -> [f64; 2] {
+        [self.linear, self.angular].map(|loss| libm::pow(1.0 - loss, h))
+    }
+}
+
 /// Of every moving body that is damped. Of links joined by fixed joints the one with mass that is nearest the root counts
 /// (J-6).
 pub(super) fn dampings(d: &Description, m: &Model) -> Vec<BodyDamping> {

@@ -1,6 +1,6 @@
 //! Several robots and free bodies in one world: one [`Model`] is a forest on the world, so the dynamics need not know.
 
-use super::{Axis, AxisSlot, Base, Body, Coupling, Effects, LinkFrame, LinkInfo, Membership, Model, Rig};
+use super::{Axis, AxisSlot, Base, Body, Coupling, Effects, JointSet, LinkFrame, LinkInfo, Membership, Model, Rig};
 use crate::math::Pose;
 use std::ops::Range;
 
@@ -65,6 +65,7 @@ impl Model {
             ..c.clone()
         }));
         self.links.extend(other.links.iter().map(|l| shift.link(l, &named)));
+        self.joints.extend(other.joints.iter().map(|j| shift.joint(j, &named)));
         self.rigs.extend(other.rigs.iter().map(|r| shift.rig(r, &named)));
         self.append_rest(&other, &shift, &named);
         (self.nq, self.nv, self.balls) = (self.nq + other.nq, self.nv + other.nv, self.balls + other.balls);
@@ -162,6 +163,10 @@ impl Shift {
         let membership =
             l.membership.as_ref().map(|m| Membership { joint: named(&m.joint), axis: named(&m.axis), root: m.root });
         LinkInfo { name: named(&l.name), parent: l.parent.map(|p| p + self.link), membership, frame, ..l.clone() }
+    }
+
+    fn joint(&self, j: &JointSet, named: &dyn Fn(&str) -> String) -> JointSet {
+        JointSet { name: named(&j.name), axes: j.axes.map(|axis| axis.map(|a| a + self.axis)) }
     }
 
     fn rig(&self, r: &Rig, named: &dyn Fn(&str) -> String) -> Rig {

@@ -13,6 +13,7 @@ mod drive;
 mod effects;
 mod group;
 mod join;
+mod joint_set;
 mod membership;
 mod rig;
 
@@ -22,14 +23,15 @@ pub use collider::{Collider, Surface};
 pub use constraint::{Breakable, Coupling, SoftDof, Softness};
 pub use damping::BodyDamping;
 pub use drive::{DriveLimits, SERVO_TIME};
-pub use effects::{EFFECT_CAUSES, EFFECT_NAMES, Effects};
+pub use effects::{EFFECT_NAMES, EFFECTS, Effect, Effects, Kind, Listed, Part, Parts};
 pub use group::{EulerFrame, EulerRates, POLE, rotation};
 pub use join::Joined;
+pub use joint_set::JointSet;
 pub use membership::Membership;
 pub use rig::Rig;
 
 use crate::description::{DriveMode, MonitorFrame};
-use crate::math::{M3, Pose, S3, V3};
+use crate::math::{M3, Mat3, Pose, S3, V3, Vec3};
 
 /// Rotary or linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +75,8 @@ pub struct Axis {
     pub kind: AxisKind,
     /// Coordinates.
     pub slot: AxisSlot,
+    /// Unit vector of the axis in the frame of the link that it carries.
+    pub direction: Vec3,
     /// rad or m; −∞ where unlimited.
     pub lower: f64,
     /// rad or m; +∞ where unlimited.
@@ -121,12 +125,18 @@ pub struct LinkInfo {
     pub monitor: Option<MonitorFrame>,
     /// Mass, kg.
     pub mass: f64,
+    /// Centre of mass in the link frame, m.
+    pub center: Vec3,
+    /// Inertia about the centre of mass along the axes of the link frame, kg·m².
+    pub inertia: Mat3,
     /// The joint whose link it belongs to; `None`: fixed to the root.
     pub membership: Option<Membership>,
     /// When it may leave the computation (B-9); `None`: never.
     pub deactivation: Option<Deactivation>,
     /// Where the frame is.
     pub frame: LinkFrame,
+    /// Taken out of the world (W-11): it stands still where it was, without mass, and nothing touches it.
+    pub removed: bool,
 }
 
 /// A body below both thresholds for longer than the delay leaves the computation (B-9).
@@ -265,6 +275,8 @@ pub struct Model {
     pub breakables: Vec<Breakable>,
     /// Chains of links (J-3, J-7, J-9).
     pub chains: Vec<LinkChain>,
+    /// Groups, and axes in none, in the order of the URDF.
+    pub joints: Vec<JointSet>,
     /// Frames that mirror groups (J-4).
     pub rigs: Vec<Rig>,
     /// Bodies that lose velocity by themselves.

@@ -20,6 +20,11 @@ impl Time {
         let seconds = ns.div_euclid(SECOND).clamp(i64::from(i32::MIN), i64::from(i32::MAX));
         Self { sec: seconds as i32, nanosec: ns.rem_euclid(SECOND) as u32 }
     }
+
+    /// In nanoseconds.
+    pub fn ns(&self) -> i64 {
+        i64::from(self.sec) * 1_000_000_000 + i64::from(self.nanosec)
+    }
 }
 
 /// std_msgs/Header.
@@ -91,7 +96,7 @@ impl From<Quat> for Quaternion {
 }
 
 /// geometry_msgs/Pose.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Pose {
     /// m.
     pub position: Vector3,

@@ -9,33 +9,33 @@ use std::path::Path;
 const VERSION: u32 = 9;
 const ROS_DISTRO: &str = "jazzy";
 
-/// What is in a bag; one message per topic and sample.
+/// What is in a bag.
 #[derive(Clone, Debug, Default)]
 pub struct Contents {
     /// Topics.
     pub topics: Vec<Topic>,
-    /// Samples written.
-    pub samples: u64,
-    /// Stamps of the first and the last sample, ns.
-    span: Option<(i64, i64)>,
+    /// Log times of the first and the last message, ns; they do not fall.
+    pub span: Option<(u64, u64)>,
 }
 
-impl Contents {
-    /// Counts a sample; stamps do not fall.
-    pub fn count(&mut self, stamp_ns: i64) {
-        let first = self.span.map_or(stamp_ns, |(first, _)| first);
-        self.span = Some((first, stamp_ns));
-        self.samples += 1;
-    }
-}
-
-/// A topic.
+/// A topic, and how many messages of it there are.
 #[derive(Clone, Debug)]
 pub struct Topic {
     /// Absolute name.
     pub name: String,
     /// Type.
     pub kind: MessageType,
+    /// Subscribers that come late get the last message.
+    pub latched: bool,
+    /// Messages.
+    pub count: u64,
+}
+
+impl Topic {
+    /// A topic without messages, and without memory.
+    pub fn new(name: impl Into<String>, kind: MessageType) -> Self {
+        Self { name: name.into(), kind, latched: false, count: 0 }
+    }
 }
 
 #[derive(Serialize)]
@@ -61,12 +61,12 @@ struct Information {
 
 #[derive(Clone, Copy, Serialize)]
 struct Duration {
-    nanoseconds: i64,
+    nanoseconds: u64,
 }
 
 #[derive(Clone, Copy, Serialize)]
 struct StartingTime {
-    nanoseconds_since_epoch: i64,
+    nanoseconds_since_epoch: u64,
 }
 
 #[derive(Serialize)]
@@ -122,14 +122,14 @@ pub fn yaml(contents: &Contents, file: &Path) -> io::Result<String> {
     let (first, last) = contents.span.unwrap_or_default();
     let duration = Duration { nanoseconds: last - first };
     let starting_time = StartingTime { nanoseconds_since_epoch: first };
-    let message_count = contents.samples * contents.topics.len() as u64;
+    let message_count = contents.topics.iter().map(|t| t.count).sum();
     let information = Information {
         version: VERSION,
         storage_identifier: "mcap",
         duration,
         starting_time,
         message_count,
-        topics_with_message_count: contents.topics.iter().map(|t| topic_count(t, contents.samples)).collect(),
+        topics_with_message_count: contents.topics.iter().map(topic_count).collect(),
         compression_format: "",
         compression_mode: "",
         relative_file_paths: vec![path.clone()],
@@ -140,33 +140,33 @@ pub fn yaml(contents: &Contents, file: &Path) -> io::Result<String> {
     serde_saphyr::to_string(&Document { rosbag2_bagfile_information: information }).map_err(io::Error::other)
 }
 
-fn topic_count(topic: &Topic, message_count: u64) -> TopicCount {
+fn topic_count(topic: &Topic) -> TopicCount {
     let topic_metadata = TopicMetadata {
         name: topic.name.clone(),
         r#type: topic.kind.full_name(),
         serialization_format: "cdr",
-        offered_qos_profiles: vec![reliable()],
+        offered_qos_profiles: vec![reliable(topic.latched)],
         type_description_hash: topic.kind.hash,
     };
-    TopicCount { topic_metadata, message_count }
+    TopicCount { topic_metadata, message_count: topic.count }
 }
 
 /// The profile under which the messages are to be played, as YAML: a list of one.
 ///
 /// # Errors
 /// None that is known: the profile is a constant.
-pub fn offered_qos() -> io::Result<String> {
-    serde_saphyr::to_string(&[reliable()]).map_err(io::Error::other)
+pub fn offered_qos(latched: bool) -> io::Result<String> {
+    serde_saphyr::to_string(&[reliable(latched)]).map_err(io::Error::other)
 }
 
-fn reliable() -> Qos {
+fn reliable(latched: bool) -> Qos {
     const SECOND: i64 = 1_000_000_000;
     let endless = QosTime { sec: i64::MAX / SECOND, nsec: i64::MAX % SECOND };
     Qos {
         history: "keep_last",
-        depth: 10,
+        depth: if latched { 1 } else { 10 },
         reliability: "reliable",
-        durability: "volatile",
+        durability: if latched { "transient_local" } else { "volatile" },
         deadline: endless,
         lifespan: endless,
         liveliness: "automatic",

@@ -3,16 +3,28 @@
 mod bag;
 mod contacts;
 mod csv;
+mod definitions;
 mod folder;
+mod live;
 pub mod messages;
 mod metadata;
+mod reader;
+mod recover;
 mod sample;
+mod samples;
 mod schema;
+pub mod story;
 
-pub use bag::BagWriter;
+pub use bag::{Bag, CDR_LITTLE_ENDIAN, to_cdr};
 pub use contacts::ContactWriter;
 pub use csv::CsvWriter;
+pub use live::{Item, Report, Session};
+pub use metadata::Topic;
+pub use reader::{BagReader, Stored, file_in};
+pub use recover::{Recovered, recover};
 pub use sample::Sample;
+pub use samples::BagWriter;
+pub use schema::MessageType;
 
 use crate::model::Model;
 use folder::Place;

@@ -1,8 +1,14 @@
 //! Command messages → axis commands. All or nothing: a refused message changes nothing.
 
 use super::messages::JointState;
+pub use super::refusal::{Refusal, RefusalKind};
+use super::ros2_control::{Control, Entry};
 use crate::world::{AxisCommand, Mode};
 use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Speed that stands for 0 where a drive holds still, rad/s or m/s.
+const SLOWEST: f64 = 1e-9;
 
 /// A command message, as it came in.
 #[derive(Clone, Copy, Debug)]
@@ -13,60 +19,18 @@ pub enum Command<'a> {
     Servo(&'a [f64]),
     /// Any subset of the axes, by name.
     Joint(&'a JointState),
+    /// From ros2_control.
+    Control(&'a JointState),
 }
 
-/// Why a message was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum RefusalKind {
-    /// An array has the wrong length.
-    WrongSize,
-    /// A value is NaN or infinite.
-    NotFinite,
-    /// No axis has this name.
-    UnknownName,
-    /// An axis is named twice.
-    DuplicateName,
-    /// The axis or the parameter `allow_mode_switch` forbids to switch the drive's mode.
-    ModeSwitch,
-    /// Applied torque and applied speed contradict each other.
-    OppositeSigns,
-    /// Names axes, but gives no values.
-    Empty,
-}
-
-impl RefusalKind {
-    /// Every kind.
-    pub const ALL: [Self; 7] = [
-        Self::WrongSize,
-        Self::NotFinite,
-        Self::UnknownName,
-        Self::DuplicateName,
-        Self::ModeSwitch,
-        Self::OppositeSigns,
-        Self::Empty,
-    ];
-
-    /// Name in `/diagnostics`.
-    pub fn name(self) -> &'static str {
+impl Command<'_> {
+    /// Its stamp, ns; `None` where the message has none, or where it means nothing.
+    pub fn stamp_ns(&self) -> Option<i64> {
         match self {
-            Self::WrongSize => "wrong size",
-            Self::NotFinite => "not finite",
-            Self::UnknownName => "unknown name",
-            Self::DuplicateName => "duplicate name",
-            Self::ModeSwitch => "mode switch not allowed",
-            Self::OppositeSigns => "torque against speed",
-            Self::Empty => "no values",
+            Self::Joint(message) => Some(message.header.stamp.ns()),
+            Self::Effort(_) | Self::Servo(_) | Self::Control(_) => None,
         }
     }
-}
-
-/// A refused message.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal {
-    /// For counting.
-    pub kind: RefusalKind,
-    /// For people: names the axis, the value and what would be accepted.
-    pub reason: String,
 }
 
 /// What commands are checked against.
@@ -76,10 +40,13 @@ pub struct Rules {
     by_name: HashMap<String, usize>,
     /// Parameter `allow_mode_switch`.
     pub allow_mode_switch: bool,
+    /// What ros2_control may command.
+    pub control: Option<Arc<Control>>,
 }
 
 #[derive(Clone, Debug)]
 struct Axis {
+    index: usize,
     name: String,
     switchable: bool,
 }
@@ -87,9 +54,10 @@ struct Axis {
 impl Rules {
     /// Rules for axes given as (name, may its mode be switched?), in the order of `Model::axes`.
     pub fn new<'a>(axes: impl IntoIterator<Item = (&'a str, bool)>, allow_mode_switch: bool) -> Self {
-        let axes: Vec<_> = axes.into_iter().map(|(name, switchable)| Axis { name: name.into(), switchable }).collect();
+        let axis = |(index, (name, switchable)): (usize, (&str, bool))| Axis { index, name: name.into(), switchable };
+        let axes: Vec<_> = axes.into_iter().enumerate().map(axis).collect();
         let by_name = axes.iter().enumerate().map(|(i, a)| (a.name.clone(), i)).collect();
-        Self { axes, by_name, allow_mode_switch }
+        Self { axes, by_name, allow_mode_switch, control: None }
     }
 }
 
@@ -98,7 +66,20 @@ pub fn apply(commands: &mut [AxisCommand], message: Command, rules: &Rules) -> R
     let merged = match message {
         Command::Effort(values) => every_axis(commands, values, rules, AxisCommand::torque)?,
         Command::Servo(values) => every_axis(commands, values, rules, AxisCommand::servo)?,
-        Command::Joint(message) => named_axes(commands, message, rules)?,
+        Command::Joint(message) => {
+            sizes(message)?;
+            let command =
+                |axis: &Axis, present: &AxisCommand, i: usize| one_axis(axis, present, entry(axis, message, i)?);
+            named_axes(commands, &message.name, rules, command)?
+        }
+        Command::Control(message) => {
+            let Some(control) = &rules.control else {
+                return refuse(RefusalKind::UnknownName, "the robot has no <ros2_control> block".into());
+            };
+            let entries = control.entries(message)?;
+            let command = |axis: &Axis, present: &AxisCommand, i: usize| controlled(axis, present, entries[i], control);
+            named_axes(commands, &message.name, rules, command)?
+        }
     };
     commands.copy_from_slice(&merged);
     Ok(())
@@ -125,11 +106,16 @@ fn every_axis(
     Ok(merged)
 }
 
-fn named_axes(commands: &[AxisCommand], message: &JointState, rules: &Rules) -> Result<Vec<AxisCommand>, Refusal> {
-    sizes(message)?;
+/// `command` makes the new command of an axis from its present one and entry i of the message.
+fn named_axes(
+    commands: &[AxisCommand],
+    names: &[String],
+    rules: &Rules,
+    command: impl Fn(&Axis, &AxisCommand, usize) -> Result<AxisCommand, Refusal>,
+) -> Result<Vec<AxisCommand>, Refusal> {
     let mut merged = commands.to_vec();
     let mut named = vec![false; merged.len()];
-    for (i, name) in message.name.iter().enumerate() {
+    for (i, name) in names.iter().enumerate() {
         let Some(&index) = rules.by_name.get(name.as_str()) else {
             return refuse(
                 RefusalKind::UnknownName,
@@ -140,7 +126,7 @@ fn named_axes(commands: &[AxisCommand], message: &JointState, rules: &Rules) -> 
             return refuse(RefusalKind::DuplicateName, format!("axis '{name}' is named twice"));
         }
         let axis = &rules.axes[index];
-        let command = one_axis(axis, &merged[index], message, i)?;
+        let command = command(axis, &merged[index], i)?;
         may_switch(axis, merged[index].mode, command.mode, rules)?;
         merged[index] = command;
     }
@@ -162,15 +148,21 @@ fn sizes(message: &JointState) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The command of one axis after entry `i` of `message`.
-fn one_axis(axis: &Axis, present: &AxisCommand, message: &JointState, i: usize) -> Result<AxisCommand, Refusal> {
+/// Entry `i` of a message whose arrays are as long as its names.
+fn entry(axis: &Axis, message: &JointState, i: usize) -> Result<Entry, Refusal> {
     let value = |field: &str, values: &[f64]| match values.get(i) {
         Some(&v) => finite(axis, field, v).map(|()| Some(v)),
         None => Ok(None),
     };
-    let position = value("position", &message.position)?;
-    let velocity = value("velocity", &message.velocity)?;
-    let effort = value("effort", &message.effort)?;
+    Ok([
+        value("position", &message.position)?,
+        value("velocity", &message.velocity)?,
+        value("effort", &message.effort)?,
+    ])
+}
+
+/// The command of one axis after position, velocity and effort.
+fn one_axis(axis: &Axis, present: &AxisCommand, [position, velocity, effort]: Entry) -> Result<AxisCommand, Refusal> {
     let command = match (position, effort) {
         (Some(target), _) => AxisCommand {
             torque: effort.unwrap_or(f64::NAN),
@@ -182,6 +174,27 @@ fn one_axis(axis: &Axis, present: &AxisCommand, message: &JointState, i: usize) 
     };
     consistent(axis, &command)?;
     Ok(command)
+}
+
+/// As [`one_axis`]; but a velocity alone is a velocity to be driven with all that the drive has, and nothing is no command.
+fn controlled(axis: &Axis, present: &AxisCommand, entry: Entry, control: &Control) -> Result<AxisCommand, Refusal> {
+    match entry {
+        [None, None, None] => Ok(*present),
+        [None, Some(speed), None] => {
+            let torque = control.max_torque[axis.index];
+            if torque.is_infinite() {
+                let reason = format!(
+                    "axis '{}': nothing bounds the torque by which it would be driven at a velocity; give its drive a max_torque",
+                    axis.name
+                );
+                return refuse(RefusalKind::NotFinite, reason);
+            }
+            // A drive stands still at the slowest speed that its line can have (X-8 forbids torque at speed 0).
+            let speed = if speed.abs() < SLOWEST { SLOWEST } else { speed };
+            Ok(AxisCommand { speed, ..AxisCommand::torque(torque.copysign(speed)) })
+        }
+        _ => one_axis(axis, present, entry),
+    }
 }
 
 /// in torque mode, torque and speed must point the same way.
@@ -357,5 +370,34 @@ mod tests {
         accepted(Command::Joint(&joint(&["knee"], &[], &[0.0], &[0.0])));
         accepted(Command::Joint(&joint(&["knee"], &[], &[-1.0], &[-2.0])));
         accepted(Command::Joint(&joint(&["knee"], &[0.0], &[-1.0], &[2.0])));
+    }
+
+    fn controlled_by(message: &JointState, max_torque: f64) -> Result<Vec<AxisCommand>, Refusal> {
+        let mut commands = start();
+        let control = Control::for_tests(&["hip", "knee", "fixed_mode"], max_torque);
+        let rules = Rules { control: Some(Arc::new(control)), ..Rules::new(AXES, true) };
+        apply(&mut commands, Command::Control(message), &rules).map(|()| commands)
+    }
+
+    #[test]
+    fn what_no_controller_commands_stays_as_it_is() {
+        let nan = f64::NAN;
+        let c = controlled_by(&joint(&["hip", "knee"], &[nan, nan], &[nan, nan], &[nan, 3.0]), 20.0).unwrap();
+        assert_eq!(bits(&c[..1]), bits(&start()[..1]));
+        assert_eq!(bits(&c[1..]), bits(&[AxisCommand::torque(3.0), AxisCommand::IDLE]));
+        let c = controlled_by(&joint(&["hip", "knee"], &[nan, nan], &[], &[nan, nan]), 20.0).unwrap();
+        assert_eq!(bits(&c), bits(&start()));
+    }
+
+    #[test]
+    fn a_velocity_alone_is_driven_with_all_that_the_drive_has() {
+        let c = controlled_by(&joint(&["hip", "knee"], &[], &[-0.7, 0.0], &[]), 20.0).unwrap();
+        assert_eq!((c[0].mode, c[0].torque, c[0].speed), (Mode::Torque, -20.0, -0.7));
+        assert_eq!((c[1].mode, c[1].torque, c[1].speed), (Mode::Torque, 20.0, SLOWEST));
+        assert!(c.iter().all(AxisCommand::is_sound));
+        let refusal = controlled_by(&joint(&["hip"], &[], &[0.7], &[]), f64::INFINITY).unwrap_err();
+        assert!(refusal.reason.contains("max_torque"), "{}", refusal.reason);
+        let switch = controlled_by(&joint(&["fixed_mode"], &[], &[0.7], &[]), 20.0).unwrap_err();
+        assert_eq!(switch.kind, RefusalKind::ModeSwitch);
     }
 }

@@ -6,18 +6,22 @@ use super::listen::{CommandTopics, Desk, Listener};
 use super::log::{self, Logger};
 use super::messages::DiagnosticArray;
 use super::names::Names;
+use super::neighbours::Neighbours;
 use super::node::Robot;
 use super::parameters::{ParameterServers, Values, declare};
-use super::publish::Outlet;
-use super::topics::{Topics, stream_qos};
+use super::publish::{JOINT_STATES, Outlet};
+use super::recording::{PARAMETER_EVENTS, Tape};
+use super::ros2_control::Control;
+use super::services::Services;
+use super::topics::{Outgoing, Topics, report_qos};
 use crate::world::Snapshot;
 use futures::channel::oneshot;
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
-use ros2_client::{Context, Node, NodeName, NodeOptions, Publisher};
+use ros2_client::{Context, Node, NodeName, NodeOptions};
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Time for the last discovery message to leave before the sockets close.
 const FAREWELL: Duration = Duration::from_millis(200);
@@ -35,6 +39,10 @@ pub struct Plan<'a> {
     pub environment: &'a Environment,
     /// For the frames that never move.
     pub initial: &'a Snapshot,
+    /// Where messages are noted.
+    pub tape: &'a Tape,
+    /// How ros2_control speaks with it, if it does.
+    pub control: Option<&'a Arc<Control>>,
 }
 
 /// A connection. The publishing thread owns it.
@@ -42,11 +50,14 @@ pub struct Connection {
     /// Publishers of the state.
     pub outlet: Outlet,
     /// Publisher of `/diagnostics`.
-    pub diagnostics: Publisher<DiagnosticArray>,
+    pub diagnostics: Outgoing<DiagnosticArray>,
     /// The log.
     pub log: Logger,
     /// Topics with their types, for people.
     pub topics: Vec<String>,
+    neighbours: Neighbours,
+    /// What others should not publish: absolute names.
+    own_topics: Vec<String>,
     listening: JoinHandle<Desk>,
     end_listening: oneshot::Sender<()>,
     node: Arc<Node>,
@@ -55,26 +66,58 @@ pub struct Connection {
 }
 
 impl Connection {
-    /// Joins the domain, creates everything and starts to listen. `Err` says what kept it from that.
-    pub fn open(plan: Plan, desk: Desk) -> Result<Self, String> {
+    /// Joins the domain, creates everything and starts to listen. `alone`: refuses if somebody else publishes `joint_states` of this name
+    /// already, unless the parameter `allow_shared_topics` is true. `Err` says what kept it from that.
+    pub fn open(plan: Plan, desk: Desk, alone: bool) -> Result<Self, String> {
         let context = context(plan.environment)?;
-        let mut node = create_node(&context, plan.args, &desk.values)?;
-        let log = Logger::new(&mut node, plan.args.log_level, plan.args.rosout, plan.args.stderr)?;
         let names = Names::new(&plan.args.namespace, &plan.args.node, &plan.args.remaps);
-        let mut topics = Topics::new(&mut node, &names);
-        let mut outlet = Outlet::new(&mut topics, &plan.robot.model, &log)?;
-        let diagnostics = topics.publisher("/diagnostics", "diagnostic_msgs/DiagnosticArray", &stream_qos())?;
-        let command_topics = CommandTopics::new(&mut topics)?;
-        let report = topics.report;
+        let mut neighbours = Neighbours::new(&context)?;
+        let mut node = create_node(&context, plan.args, &desk.values)?;
+        let log = Logger::new(&mut node, plan.args.log_level, (plan.args.rosout, plan.args.stderr), plan.tape)?;
+        let mut topics = Topics::new(&mut node, &names, plan.tape);
+        let mut outlet = Outlet::new(&mut topics, &plan, &log)?;
+        let diagnostics = topics.publisher("/diagnostics", "diagnostic_msgs/DiagnosticArray", &report_qos())?;
+        let command_topics = CommandTopics::new(&mut topics, plan.control)?;
+        let services = Services::new(&mut topics, plan.tape)?;
+        let (report, own_topics) = (topics.report, topics.own);
+        plan.tape.track(PARAMETER_EVENTS, PARAMETER_EVENTS, "rcl_interfaces/ParameterEvent", false);
         let servers = ParameterServers::new(&mut node)?;
+        if alone && !desk.values.allow_shared_topics() {
+            let refused = neighbours.refuse_to_share(&names.resolve(JOINT_STATES)?.to_string());
+            if let Err(reason) = refused {
+                drop((outlet, diagnostics, command_topics, services, servers, log, neighbours));
+                drop(node);
+                thread::sleep(FAREWELL);
+                return Err(reason);
+            }
+        }
         outlet.latch(&plan.robot.urdf, plan.initial);
         let node = Arc::new(node);
-        let listener = Listener { topics: command_topics, servers, node: node.clone(), log: log.clone() };
+        let listener = Listener {
+            topics: command_topics,
+            servers,
+            services,
+            node: node.clone(),
+            log: log.clone(),
+            tape: plan.tape.clone(),
+        };
         let (end_listening, stop) = oneshot::channel();
         let model = plan.robot.model.clone();
         let listening = spawn("ros listen", move || listener.run(desk, &model, stop))?;
         let library_threads = library_threads();
-        Ok(Self { outlet, diagnostics, log, topics: report, listening, end_listening, node, context, library_threads })
+        Ok(Self {
+            outlet,
+            diagnostics,
+            log,
+            topics: report,
+            neighbours,
+            own_topics,
+            listening,
+            end_listening,
+            node,
+            context,
+            library_threads,
+        })
     }
 
     /// False if a thread of the DDS library has ended: RustDDS 0.15 ends its event loops when a system call is
@@ -83,12 +126,22 @@ impl Connection {
         library_threads() >= self.library_threads
     }
 
+    /// Looks who subscribes, some times a second.
+    pub fn look_around(&mut self) {
+        self.outlet.audience.look(&self.context, Instant::now());
+    }
+
+    /// Topics of ours that others publish, too, and their nodes.
+    pub fn shared_topics(&mut self) -> Vec<(String, String)> {
+        self.neighbours.publishers(&self.own_topics, false)
+    }
+
     /// Leaves the domain; gives back what was on the desk. `None` if the listening thread has panicked.
     pub fn close(self) -> Option<Desk> {
         drop(self.end_listening);
         let desk = self.listening.join().ok();
         log::leave();
-        drop((self.outlet, self.diagnostics, self.log));
+        drop((self.outlet, self.diagnostics, self.log, self.neighbours));
         drop(self.node);
         thread::sleep(FAREWELL);
         drop(self.context);

@@ -1,6 +1,7 @@
 //! Counters of command messages, shared by the listening and the publishing thread.
 
 use super::commands::RefusalKind;
+use super::watchdog::Lapses;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// The command topics.
@@ -12,11 +13,13 @@ pub enum CommandTopic {
     Servo,
     /// `joint_command`.
     Joint,
+    /// `robot_joint_commands`.
+    Control,
 }
 
 impl CommandTopic {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Effort, Self::Servo, Self::Joint];
+    pub const ALL: [Self; 4] = [Self::Effort, Self::Servo, Self::Joint, Self::Control];
 
     /// Name before remapping.
     pub fn name(self) -> &'static str {
@@ -24,6 +27,7 @@ impl CommandTopic {
             Self::Effort => "effort_command",
             Self::Servo => "servo_command",
             Self::Joint => "joint_command",
+            Self::Control => "robot_joint_commands",
         }
     }
 }
@@ -33,6 +37,8 @@ impl CommandTopic {
 pub struct CommandCounts {
     accepted: [AtomicU64; CommandTopic::ALL.len()],
     refused: [[AtomicU64; RefusalKind::ALL.len()]; CommandTopic::ALL.len()],
+    /// What happened because no command came.
+    pub lapses: Lapses,
 }
 
 impl CommandCounts {

@@ -1,10 +1,14 @@
 //! The lock-free cells between the control thread and the ROS threads. Nothing here blocks or, after set-up, allocates.
 //!
 //! Commands and settings go in through triple buffers (the latest value wins), snapshots come out through a bounded
-//! ring that drops the oldest and counts, timing comes out by exchanging boxes.
+//! ring that drops the oldest and counts, timing comes out by exchanging boxes. What is asked of the world (`asks.rs`) waits in a
+//! bounded queue; commands that the control loop has set on its own come out through a triple buffer.
 
+use super::asks::{Ask, Asks};
+use super::lockstep::Gate;
+use super::watchdog::OnTimeout;
 use crate::monitor::Timing;
-use crate::world::{AxisCommand, Settings, Snapshot, World};
+use crate::world::{AxisCommand, Order, Settings, Snapshot, World};
 use crossbeam_queue::ArrayQueue;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -28,6 +32,42 @@ pub struct Pace {
     pub real_time_factor: f64,
     /// Control intervals that may be caught up before the deadline is set anew.
     pub max_catch_up: u32,
+    /// W-7: does a reset of the state put the joints back, too?
+    pub reset_joints: bool,
+    /// W-8: is the state reset whenever time goes on after a pause?
+    pub reset_at_start: bool,
+    /// Is every interval made again with finer steps, to see what it is off by?
+    pub estimate_error: bool,
+    /// Does the world wait for stamped commands?
+    pub lockstep: bool,
+    /// Real time that it waits at most, ns; 0: for ever.
+    pub lockstep_timeout_ns: u64,
+    /// Simulated time without a command after which `on_timeout` comes into force, ns; 0: never.
+    pub command_timeout_ns: i64,
+    /// What the axes do then.
+    pub on_timeout: OnTimeout,
+    /// May the control loop switch modes of drives?
+    pub allow_mode_switch: bool,
+}
+
+impl Default for Pace {
+    /// In real time.
+    fn default() -> Self {
+        Self {
+            settings: Settings::default(),
+            paused: false,
+            real_time_factor: 1.0,
+            max_catch_up: 100,
+            reset_joints: true,
+            reset_at_start: false,
+            estimate_error: false,
+            lockstep: false,
+            lockstep_timeout_ns: 0,
+            command_timeout_ns: 0,
+            on_timeout: OnTimeout::Hold,
+            allow_mode_switch: true,
+        }
+    }
 }
 
 /// The control thread's end.
@@ -38,6 +78,11 @@ pub struct ControlEnd {
     pub pace: Output<Pace>,
     /// Set to end the loop.
     pub stop: Arc<AtomicBool>,
+    /// What is asked of the world.
+    pub asks: Arc<Asks>,
+    /// Where it waits in lock-step.
+    pub gate: Arc<Gate>,
+    in_force: Input<Vec<AxisCommand>>,
     ring: Arc<Ring>,
 }
 
@@ -50,6 +95,11 @@ pub struct PublishEnd {
 pub struct CommandEnd {
     commands: Input<Vec<AxisCommand>>,
     pace: Input<Pace>,
+    in_force: Output<Vec<AxisCommand>>,
+    /// To ask something of the world.
+    pub asks: Arc<Asks>,
+    /// Where the world waits in lock-step.
+    pub gate: Arc<Gate>,
 }
 
 struct Ring {
@@ -69,11 +119,20 @@ pub fn exchange(
 ) -> Result<(ControlEnd, PublishEnd, CommandEnd), String> {
     let (commands_in, commands_out) = triple_buffer(commands);
     let (pace_in, pace_out) = triple_buffer(pace);
-    let ring = Arc::new(Ring::new(world)?);
+    let (in_force_in, in_force_out) = triple_buffer(commands);
+    let (ring, asks, gate) = (Arc::new(Ring::new(world)?), Arc::new(Asks::default()), Arc::new(Gate::default()));
     Ok((
-        ControlEnd { commands: commands_out, pace: pace_out, stop, ring: ring.clone() },
+        ControlEnd {
+            commands: commands_out,
+            pace: pace_out,
+            stop,
+            asks: asks.clone(),
+            gate: gate.clone(),
+            in_force: in_force_in,
+            ring: ring.clone(),
+        },
         PublishEnd { ring },
-        CommandEnd { commands: commands_in, pace: pace_in },
+        CommandEnd { commands: commands_in, pace: pace_in, in_force: in_force_out, asks, gate },
     ))
 }
 
@@ -99,13 +158,30 @@ impl Ring {
 impl ControlEnd {
     /// Hands the state of `world` out; drops the oldest unpublished state if there is no room, and counts it.
     pub fn emit(&self, world: &World) {
+        self.emit_after(world, None);
+    }
+
+    /// The same, after an order.
+    pub fn emit_after(&self, world: &World, cause: Option<Arc<Order>>) {
         // Never empty: the ring and the publishing thread together hold one box less than there are.
         let Some(mut snapshot) = self.ring.free.pop() else { return };
         world.write_snapshot(&mut snapshot);
+        snapshot.cause = cause;
         if let Some(oldest) = self.ring.full.force_push(snapshot) {
             self.ring.dropped.fetch_add(1, Ordering::Relaxed);
             let _ = self.ring.free.push(oldest);
         }
+    }
+
+    /// Tells the listening thread that these commands are in force now, whoever commanded something else before.
+    pub fn overrule(&mut self, commands: &[AxisCommand]) {
+        self.in_force.input_buffer_mut().copy_from_slice(commands);
+        self.in_force.publish();
+    }
+
+    /// The next thing that is asked of the world.
+    pub fn ask(&self) -> Option<Ask> {
+        self.asks.next()
     }
 
     /// True if the next [`Self::emit`] drops nothing.
@@ -158,9 +234,15 @@ impl CommandEnd {
         self.commands.publish();
     }
 
-    /// Makes `pace` the latest.
+    /// Commands that the control loop has set on its own since the last call; what was commanded before is no longer in force.
+    pub fn overruled(&mut self) -> Option<&[AxisCommand]> {
+        if self.in_force.update() { Some(self.in_force.output_buffer()) } else { None }
+    }
+
+    /// Makes `pace` the latest, and wakes a loop that stands.
     pub fn set_pace(&mut self, pace: Pace) {
         self.pace.write(pace);
+        self.asks.wake();
     }
 }
 
@@ -185,7 +267,7 @@ mod tests {
     }
 
     fn ends(world: &World) -> (ControlEnd, PublishEnd, CommandEnd) {
-        let pace = Pace { settings: Settings::default(), paused: false, real_time_factor: 1.0, max_catch_up: 100 };
+        let pace = Pace::default();
         exchange(world, &world.commands().to_vec(), &pace, Arc::default()).unwrap()
     }
 

@@ -1,7 +1,7 @@
 //! The node's log: standard error and `/rosout`, in the format of ROS 2.
 
 use super::messages::Time;
-use super::names;
+use super::recording::Tape;
 use ros2_client::qos::{Durability, History, QosProfile, WhenFull};
 use ros2_client::{MessageTypeName, Name, Node, Publisher};
 use serde::Serialize;
@@ -54,6 +54,8 @@ impl Severity {
     }
 }
 
+const ROSOUT: &str = "/rosout";
+
 /// rcl_interfaces/Log.
 #[derive(Clone, Debug, Serialize)]
 struct Record {
@@ -75,25 +77,65 @@ struct Inner {
     threshold: Severity,
     stderr: bool,
     rosout: Option<Publisher<Record>>,
+    tape: Tape,
+    track: usize,
     said: Mutex<HashSet<String>>,
+    warnings: Mutex<Warnings>,
+}
+
+/// What has been logged at Warn or above.
+#[derive(Clone, Debug, Default)]
+pub struct Warnings {
+    /// How much.
+    pub count: u64,
+    /// The last one.
+    pub last: String,
 }
 
 impl Logger {
     /// The log of `node`: what is at least `threshold`.
-    pub fn new(node: &mut Node, threshold: Severity, rosout: bool, stderr: bool) -> Result<Self, String> {
+    pub fn new(
+        node: &mut Node,
+        threshold: Severity,
+        (rosout, stderr): (bool, bool),
+        tape: &Tape,
+    ) -> Result<Self, String> {
         let full_name = node.fully_qualified_name();
         let name = full_name.trim_start_matches('/').replace('/', ".");
         let rosout = if rosout { Some(publisher(node)?) } else { None };
-        Ok(Self(Arc::new(Inner { name, threshold, stderr, rosout, said: Mutex::default() })))
+        let (track, tape) = (tape.track(ROSOUT, ROSOUT, "rcl_interfaces/Log", false), tape.clone());
+        Ok(Self(Arc::new(Inner {
+            name,
+            threshold,
+            stderr,
+            rosout,
+            tape,
+            track,
+            said: Mutex::default(),
+            warnings: Mutex::default(),
+        })))
+    }
+
+    /// What has been warned of since this connection was made.
+    pub fn warnings(&self) -> Warnings {
+        self.0.warnings.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone()
+    }
+
+    fn remember(&self, warning: &str) {
+        let mut warnings = self.0.warnings.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        *warnings = Warnings { count: warnings.count + 1, last: warning.to_owned() };
     }
 
     /// Logs `message`.
     #[track_caller]
     pub fn log(&self, severity: Severity, message: impl Into<String>) {
+        let message = message.into();
+        if severity >= Severity::Warn {
+            self.remember(&message);
+        }
         if severity < self.0.threshold {
             return;
         }
-        let message = message.into();
         let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         if self.0.stderr {
             let seconds = since_epoch.as_secs_f64();
@@ -111,6 +153,7 @@ impl Logger {
             function: String::new(),
             line: at.line(),
         };
+        self.0.tape.note(self.0.track, &record);
         // A log that cannot be published cannot be logged either; it has been written to standard error.
         let _ = rosout.publish(record);
     }
@@ -145,10 +188,10 @@ fn publisher(node: &mut Node) -> Result<Publisher<Record>, String> {
         .durability(Durability::TransientLocal)
         .history(History::KeepLast { depth: 1000 })
         .lifespan(Some(Duration::from_secs(10)));
-    let name = Name::parse("/rosout").map_err(|e| e.to_string())?;
+    let name = Name::parse(ROSOUT).map_err(|e| e.to_string())?;
     let topic =
         node.create_topic(&name, MessageTypeName::new("rcl_interfaces", "Log"), &qos).map_err(|e| e.to_string())?;
-    node.create_publisher(&topic, None).map_err(|e| format!("cannot publish {}: {e}", names::join("/", "rosout")))
+    node.create_publisher(&topic, None).map_err(|e| format!("cannot publish {}: {e}", ROSOUT))
 }
 
 static LEAVING: AtomicBool = AtomicBool::new(false);

@@ -6,17 +6,36 @@ use super::connection::{Plan, spawn};
 use super::control::ControlLoop;
 use super::environment::Environment;
 use super::exchange::exchange;
-use super::listen::{Desk, Live};
+use super::listen::{Desk, Live, Quit};
 use super::log::{self, Logger};
-use super::parameters::{Values, show};
+use super::parameters::{Definition, Values, show};
 use super::publish_loop::PublishLoop;
+use super::recording::{Tape, told};
+use super::ros2_control::Control;
+use crate::description::ControlBlock;
 use crate::engine::State;
 use crate::model::{Base, Model};
+use crate::record::story::Origin;
 use crate::world::{AxisCommand, Mode, World};
+use ros2_client::ParameterValue;
 use std::io::Write;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread::{self, JoinHandle};
+
+/// Parameters that are told at start in any case.
+const ALWAYS_TOLD: [&str; 9] = [
+    "control_interval",
+    "steps_per_interval",
+    "solver_iterations",
+    "time_scale",
+    "gravity",
+    "integrator",
+    "engine",
+    "base",
+    "start",
+];
 
 /// What is simulated.
 #[derive(Clone, Debug)]
@@ -29,10 +48,37 @@ pub struct Robot {
     pub model: Arc<Model>,
     /// Where everything starts.
     pub initial: State,
+    /// What all this was made of, for recordings.
+    pub origin: Origin,
+    /// Its `<ros2_control>` blocks.
+    pub controls: Vec<ControlBlock>,
 }
 
-/// Simulates `robot` until SIGINT or SIGTERM. `Err` says what kept it from starting, or from going on.
-pub fn run(robot: &Robot, args: &RosArgs, mut values: Values, environment: &Environment) -> Result<(), String> {
+/// Simulates `robot` until SIGINT or SIGTERM, and records it if a folder is given. `Err` says what kept it from starting, or from
+/// going on.
+pub fn run(
+    robot: &Robot,
+    args: &RosArgs,
+    values: Values,
+    environment: &Environment,
+    record: Option<&Path>,
+) -> Result<(), String> {
+    let tape = Tape::default();
+    record.map(|folder| tape.start(folder)).transpose()?;
+    let done = simulate(robot, args, values, environment, &tape);
+    if let Some(report) = tape.stop() {
+        say(&format!("{}\n", told(&report)));
+    }
+    done
+}
+
+fn simulate(
+    robot: &Robot,
+    args: &RosArgs,
+    mut values: Values,
+    environment: &Environment,
+    tape: &Tape,
+) -> Result<(), String> {
     log::show_library_errors();
     let stop = stop_on_signals()?;
     values.pause_at_start()?;
@@ -46,13 +92,16 @@ pub fn run(robot: &Robot, args: &RosArgs, mut values: Values, environment: &Envi
     live.take(&values);
     let settings = settings_report(&values);
     let priority = values.realtime_priority();
-    let plan = Plan { robot, args, environment, initial: &initial };
-    let publish = PublishLoop::new(plan, Desk { commands, values, end, live }, publish_end)?;
+    let control = Control::of(&robot.controls, &robot.model, values.ros2_control()).map(Arc::new);
+    let plan = Plan { robot, args, environment, initial: &initial, tape, control: control.as_ref() };
+    let quit = Quit { stop: stop.clone(), main: thread::current() };
+    let desk = Desk { commands, values, end, live: live.clone(), quit };
+    let publish = PublishLoop::new(plan, desk, publish_end)?;
     let connection = publish.connection();
     say(&start_report(plan, &settings, &connection.topics));
     environment.warnings.iter().for_each(|w| connection.log.warn(w));
 
-    let control = ControlLoop::new(world, control_end, thread::current())?;
+    let control = ControlLoop::new(world, control_end, thread::current(), live)?;
     let control = spawn_control(control, priority, &connection.log)?;
     let publish = publish.run(&stop);
     stop.store(true, Ordering::Relaxed);
@@ -121,8 +170,11 @@ fn spawn_control(control: ControlLoop, priority: i32, log: &Logger) -> Result<Jo
     Ok(thread)
 }
 
+/// What the world is set to, and whatever else is not as it is by default.
 fn settings_report(values: &Values) -> String {
-    let settings = values.iter().filter(|(d, _)| d.name != "axes").map(|(d, v)| format!("{} {}", d.name, show(v)));
+    let told =
+        |d: &Definition, v: &ParameterValue| ALWAYS_TOLD.contains(&d.name) || (d.name != "axes" && *v != d.default);
+    let settings = values.iter().filter(|(d, v)| told(d, v)).map(|(d, v)| format!("{} {}", d.name, show(v)));
     settings.collect::<Vec<_>>().join(", ")
 }
 

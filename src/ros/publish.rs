@@ -1,19 +1,21 @@
 //! Snapshots → topics.
 
+use super::audience::Audience;
+use super::connection::Plan;
 use super::log::Logger;
-use super::messages::{
-    Clock, Header, JointState, Shared, StringMessage, TFMessage, Time, Twist as TwistMessage, TwistStamped,
-    Wrench as WrenchMessage, WrenchStamped,
-};
-use super::names::topic_tokens;
-use super::tf::{Frames, WORLD};
-use super::topics::{Topics, latched_qos, stream_qos};
+use super::markers::{MarkerSettings, Markers};
+use super::messages::{Clock, JointState, Shared, StringMessage, TFMessage, Time, TwistStamped, WrenchStamped};
+use super::monitors::Monitors;
+use super::states;
+use super::tf::Frames;
+use super::topics::{Outgoing, Topics, latched_qos, state_qos, stream_qos};
 use crate::description::MonitorFrame;
 use crate::model::Model;
 use crate::world::Snapshot;
-use ros2_client::Publisher;
-use serde::Serialize;
 use std::sync::Arc;
+
+/// The topic that tells a robot's state: two publishers of it are a mistake.
+pub const JOINT_STATES: &str = "joint_states";
 
 type SharedNames = Shared<Vec<String>>;
 
@@ -21,17 +23,22 @@ type SharedNames = Shared<Vec<String>>;
 pub struct Outlet {
     model: Arc<Model>,
     frames: Frames,
-    clock: Publisher<Clock>,
-    joint_states: Publisher<JointState<SharedNames>>,
+    clock: Outgoing<Clock>,
+    joint_states: Outgoing<JointState<SharedNames>>,
     axis_names: SharedNames,
     monitored: Vec<Monitored>,
-    tf: Publisher<TFMessage>,
-    tf_static: Publisher<TFMessage>,
-    robot_description: Publisher<StringMessage>,
+    monitors: Monitors,
+    /// `debug/markers`.
+    pub markers: Markers,
+    tf: Outgoing<TFMessage>,
+    tf_static: Outgoing<TFMessage>,
+    robot_description: Outgoing<StringMessage>,
     /// Simulated time from which the next /tf is due, ns.
     next_tf_ns: i64,
     /// Stamp of the state published last: while time stands, all of it is repeated.
     last_ns: i64,
+    /// Who subscribes to what is made on demand.
+    pub audience: Audience,
     /// Messages that DDS did not take because a reliable subscriber is too far behind.
     pub refused_by_dds: u64,
 }
@@ -39,28 +46,36 @@ pub struct Outlet {
 struct Monitored {
     link: usize,
     frame: MonitorFrame,
-    twist: Publisher<TwistStamped>,
+    twist: Outgoing<TwistStamped>,
     /// `None`: the link does not collide.
-    wrench: Option<Publisher<WrenchStamped>>,
+    wrench: Option<Outgoing<WrenchStamped>>,
 }
 
 impl Outlet {
-    /// Creates the publishers for `model`.
-    pub fn new(topics: &mut Topics, model: &Arc<Model>, log: &Logger) -> Result<Self, String> {
+    /// Creates the publishers.
+    ///
+    /// # Errors
+    /// Names the topic that cannot be created.
+    pub fn new(topics: &mut Topics, plan: &Plan, log: &Logger) -> Result<Self, String> {
+        let model = &plan.robot.model;
         let stream = stream_qos();
         let latched = latched_qos();
+        let mut audience = Audience::default();
         Ok(Self {
             model: model.clone(),
             frames: Frames::new(model),
-            joint_states: topics.publisher("joint_states", "sensor_msgs/JointState", &stream)?,
+            joint_states: topics.publisher(JOINT_STATES, "sensor_msgs/JointState", &state_qos())?,
             axis_names: Shared::new(model.axes.iter().map(|a| a.name.clone()).collect()),
             monitored: monitored(topics, model, log)?,
+            monitors: Monitors::new(topics, model, plan.control.map(|c| &**c), &mut audience)?,
+            markers: Markers::new(topics, model, &mut audience)?,
             clock: topics.publisher("/clock", "rosgraph_msgs/Clock", &stream)?,
             tf: topics.publisher("/tf", "tf2_msgs/TFMessage", &stream)?,
             tf_static: topics.publisher("/tf_static", "tf2_msgs/TFMessage", &latched)?,
             robot_description: topics.publisher("robot_description", "std_msgs/String", &latched)?,
             next_tf_ns: i64::MIN,
             last_ns: i64::MIN,
+            audience,
             refused_by_dds: 0,
         })
     }
@@ -68,87 +83,61 @@ impl Outlet {
     /// Publishes what is latched: the URDF text, and the frames that never move.
     pub fn latch(&mut self, urdf: &str, initial: &Snapshot) {
         let text = StringMessage { data: urdf.into() };
-        self.refused_by_dds += send(&self.robot_description, text);
-        self.refused_by_dds += send(&self.tf_static, self.frames.fixed(initial));
+        self.refused_by_dds += self.robot_description.send(text);
+        self.refused_by_dds += self.tf_static.send(self.frames.fixed(initial));
+    }
+
+    /// Puts what is latched into a bag that was begun later.
+    pub fn note_latched(&self, urdf: &str, initial: &Snapshot) {
+        self.robot_description.note_latched(|| StringMessage { data: urdf.into() });
+        self.tf_static.note_latched(|| self.frames.fixed(initial));
     }
 
     /// Publishes one state; /tf not more often than `tf_rate` (Hz, simulated time; 0: never).
     pub fn publish(&mut self, snapshot: &Snapshot, tf_rate: f64) {
         let stamp = Time::from_ns(snapshot.stamp_ns);
-        let mut refused = send(&self.clock, Clock { clock: stamp });
-        refused += send(&self.joint_states, self.joint_state(snapshot, stamp));
+        let mut refused = self.clock.send(Clock { clock: stamp });
+        refused += self.joint_states.send(states::joint_state(self.axis_names.clone(), snapshot));
         for m in &self.monitored {
-            refused += send(&m.twist, self.twist(m, snapshot, stamp));
+            refused += m.twist.send(states::twist(&self.model, (m.link, m.frame), snapshot));
             if let Some(wrench) = &m.wrench {
-                refused += send(wrench, self.wrench(m, snapshot, stamp));
+                refused += wrench.send(states::wrench(&self.model, (m.link, m.frame), snapshot));
             }
         }
+        refused += self.monitors.publish(snapshot, &self.audience);
         let stands = snapshot.stamp_ns == self.last_ns;
+        if snapshot.stamp_ns < self.last_ns {
+            // Time was reset: what was due in the old time is not waited for.
+            self.next_tf_ns = i64::MIN;
+        }
         self.last_ns = snapshot.stamp_ns;
         if tf_rate > 0.0 && (stands || snapshot.stamp_ns >= self.next_tf_ns) {
-            refused += send(&self.tf, self.frames.moving(snapshot));
+            refused += self.tf.send(self.frames.moving(snapshot));
             self.next_tf_ns = next_on_grid(snapshot.stamp_ns, 1e9 / tf_rate);
         }
         self.refused_by_dds += refused;
     }
 
-    fn joint_state(&self, snapshot: &Snapshot, stamp: Time) -> JointState<SharedNames> {
-        JointState {
-            header: Header { stamp, frame_id: String::new() },
-            name: self.axis_names.clone(),
-            position: snapshot.position.clone(),
-            velocity: snapshot.velocity.clone(),
-            effort: snapshot.effort.clone(),
-        }
-    }
-
-    fn twist(&self, m: &Monitored, snapshot: &Snapshot, stamp: Time) -> TwistStamped {
-        let v_l = snapshot.link_twist[m.link];
-        let (frame_id, linear, angular) = match m.frame {
-            MonitorFrame::Body => (self.model.links[m.link].name.clone(), v_l.linear, v_l.angular),
-            MonitorFrame::World => {
-                let r_wl = snapshot.link_pose[m.link].rotation;
-                (WORLD.to_string(), r_wl * v_l.linear, r_wl * v_l.angular)
-            }
-        };
-        let twist = TwistMessage { linear: linear.into(), angular: angular.into() };
-        TwistStamped { header: Header { stamp, frame_id }, twist }
-    }
-
-    fn wrench(&self, m: &Monitored, snapshot: &Snapshot, stamp: Time) -> WrenchStamped {
-        let w = snapshot.link_wrench[m.link];
-        let (frame_id, force, torque) = match m.frame {
-            MonitorFrame::World => (WORLD.to_string(), w.force, w.torque),
-            MonitorFrame::Body => {
-                let r_lw = snapshot.link_pose[m.link].rotation.inverse();
-                (self.model.links[m.link].name.clone(), r_lw * w.force, r_lw * w.torque)
-            }
-        };
-        let wrench = WrenchMessage { force: force.into(), torque: torque.into() };
-        WrenchStamped { header: Header { stamp, frame_id }, wrench }
+    /// Shows one state as markers, if somebody subscribes and it is time for it.
+    pub fn show(&mut self, snapshot: &Snapshot, settings: &MarkerSettings) {
+        self.refused_by_dds += self.markers.publish(snapshot, settings, &self.audience);
     }
 }
 
 fn monitored(topics: &mut Topics, model: &Model, log: &Logger) -> Result<Vec<Monitored>, String> {
-    let links = || model.links.iter().enumerate().filter_map(|(i, l)| Some((i, l.name.as_str(), l.monitor?)));
-    let tokens = topic_tokens(links().map(|(_, name, _)| name));
     let mut all = vec![];
-    for ((link, name, frame), token) in links().zip(tokens) {
+    for (link, frame, token) in states::monitored(model) {
+        let name = &model.links[link].name;
         let topic = format!("twist/{token}");
-        if token != name {
+        if token != *name {
             log.warn(format!("link '{name}' has characters that a topic name must not have; its twist is on {topic}"));
         }
-        let twist = topics.publisher(&topic, "geometry_msgs/TwistStamped", &stream_qos())?;
+        let twist = topics.publisher(&topic, "geometry_msgs/TwistStamped", &state_qos())?;
         let collides = model.effects.contact && model.colliders.iter().any(|c| c.link == Some(link));
-        let wrench = || topics.publisher(&format!("wrench/{token}"), "geometry_msgs/WrenchStamped", &stream_qos());
+        let wrench = || topics.publisher(&format!("wrench/{token}"), "geometry_msgs/WrenchStamped", &state_qos());
         all.push(Monitored { link, frame, twist, wrench: collides.then(wrench).transpose()? });
     }
     Ok(all)
-}
-
-/// 1 if DDS refused it.
-fn send<M: Serialize>(publisher: &Publisher<M>, message: M) -> u64 {
-    u64::from(publisher.publish(message).is_err())
 }
 
 /// The first multiple of `period` ns after `stamp`, so that rates do not drift with the control interval.

@@ -53,7 +53,8 @@ impl Frames {
 
     fn message(&self, snapshot: &Snapshot, fixed: bool) -> TFMessage {
         let stamp = Time::from_ns(snapshot.stamp_ns);
-        let asked = self.links.iter().enumerate().filter(|(_, f)| f.fixed == fixed);
+        let there = |link: usize| !snapshot.removed.get(link).is_some_and(|removed| *removed);
+        let asked = self.links.iter().enumerate().filter(|(link, f)| f.fixed == fixed && there(*link));
         let transforms = asked.map(|(link, frame)| {
             let (parent, x_pc) = self.in_parent(link, snapshot);
             TransformStamped {

@@ -69,3 +69,22 @@ pub enum ContactForm {
     /// A surface; only of what stands still.
     Surface(Arc<TriMesh>),
 }
+
+impl ContactForm {
+    /// What people call it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::HalfSpace => "half-space",
+            Self::Ball { .. } => "ball",
+            Self::Cuboid { .. } => "cuboid",
+            Self::RoundCuboid { .. } => "round cuboid",
+            Self::Capsule { .. } => "capsule",
+            Self::Ellipsoid { .. } => "ellipsoid",
+            Self::Cylinder { .. } => "cylinder",
+            Self::Cone { .. } => "cone",
+            Self::Frustum { .. } => "frustum",
+            Self::Hull(_) => "hull",
+            Self::Surface(_) => "surface",
+        }
+    }
+}

@@ -64,8 +64,6 @@ pub struct AxisSet {
     stiff: Vec<bool>,
     /// Kinds of the riser an axis stood on at the end of the last step; 0 = it slid.
     pub(super) memory: Vec<u8>,
-    /// Per axis: it stood on a hard stop in the last step.
-    pub(super) stopped: Vec<bool>,
     moves: Vec<isize>,
     /// Per axis of a 3DOF group: which of its group's locks is its own, while it is locked.
     pub(super) lock: Vec<usize>,
@@ -115,7 +113,6 @@ impl AxisSet {
             at_end: vec![true; n],
             stiff: vec![false; n],
             memory: vec![0; n],
-            stopped: vec![false; n],
             moves: vec![0; n],
             lock: vec![0; n],
             rates: vec![EulerRates::default(); model.eulers.len()],

@@ -99,6 +99,10 @@ pub struct Contacts {
     pub tempered: u64,
     /// What the last solve left, m/s.
     pub residual: f64,
+    /// Does any pair of surfaces bounce?
+    bounces: bool,
+    /// Has any pair rolling or spinning friction?
+    resists_turning: bool,
 }
 
 impl Contacts {
@@ -127,6 +131,8 @@ impl Contacts {
             worst: 0.0,
             tempered: 0,
             residual: 0.0,
+            bounces: m.pairs().any(|(_, s)| s.restitution > 0.0),
+            resists_turning: m.pairs().any(|(_, s)| s.rolling > 0.0 || s.spinning > 0.0),
         })
     }
 

@@ -23,17 +23,15 @@ impl Cholesky {
     #[inline(always)]
     pub fn factorise(&mut self, n: usize, element: impl Fn(usize, usize) -> f64) {
         self.n = n;
-        for i in 0..n {
-            let (above, row) = self.l.split_at_mut(i * n);
-            for k in 0..=i {
-                let own = element(i, k);
-                let other = if k < i { &above[k * n..k * n + k] } else { &[][..] };
-                let left = own - if k < i { dot(&row[..k], other) } else { dot(&row[..k], &row[..k]) };
-                row[k] = match () {
-                    () if k < i => left * above[k * n + k],
-                    () if left > DEPENDENT * own => 1.0 / left.sqrt(),
-                    () => 0.0,
-                };
+        // Column by column: the elements of one do not wait for each other.
+        for k in 0..n {
+            let (above, below) = self.l.split_at_mut((k + 1) * n);
+            let pivot = &mut above[k * n..];
+            let own = element(k, k);
+            let left = own - dot(&pivot[..k], &pivot[..k]);
+            pivot[k] = if left > DEPENDENT * own { 1.0 / left.sqrt() } else { 0.0 };
+            for (i, row) in (k + 1..n).zip(below.chunks_exact_mut(n)) {
+                row[k] = (element(i, k) - dot(&row[..k], &pivot[..k])) * pivot[k];
             }
         }
     }
@@ -83,6 +81,7 @@ impl Lu {
     }
 
     /// Of a matrix of n rows, row by row, with something added to its diagonal.
+    #[inline(always)]
     pub fn factorise(&mut self, n: usize, matrix: &[f64], added: impl Fn(usize) -> f64) {
         self.n = n;
         self.lu[..n * n].copy_from_slice(matrix);
@@ -91,8 +90,7 @@ impl Lu {
             self.lu[i * n + i] += added(i);
         }
         for k in 0..n {
-            let size = |i: &usize| self.lu[i * n + k].abs();
-            let best = (k..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(k);
+            let best = self.largest(k);
             if best != k {
                 self.rows.swap(best, k);
                 let (above, below) = self.lu.split_at_mut(best * n);
@@ -107,19 +105,36 @@ impl Lu {
                 let factor = row[k] * inverse;
                 row[k] = factor;
                 if factor != 0.0 {
-                    row[k + 1..].iter_mut().zip(&from[k + 1..]).for_each(|(to, from)| *to -= factor * from);
+                    for (to, from) in row[k + 1..].iter_mut().zip(&from[k + 1..]) {
+                        *to -= factor * from;
+                    }
                 }
             }
         }
     }
 
+    /// Row of the largest number in a column, from the diagonal down; the last one of equals.
+    #[inline(always)]
+    fn largest(&self, k: usize) -> usize {
+        let (mut best, mut size) = (k, self.lu[k * self.n + k].abs());
+        for i in k + 1..self.n {
+            let own = self.lu[i * self.n + k].abs();
+            if own >= size {
+                (best, size) = (i, own);
+            }
+        }
+        best
+    }
+
     /// Solves for this right-hand side.
+    #[inline(always)]
     pub fn solve(&mut self, right: impl Fn(usize) -> f64) {
         self.substitute(right);
         self.x[..self.n].copy_from_slice(&self.step[..self.n]);
     }
 
     /// Adds the solution for what the one that is there leaves over.
+    #[inline(always)]
     pub fn refine(&mut self, left: impl Fn(usize, &[f64]) -> f64) {
         let x = std::mem::take(&mut self.x);
         let n = self.n;
@@ -128,6 +143,7 @@ impl Lu {
         self.x.iter_mut().zip(&self.step[..self.n]).for_each(|(x, step)| *x += step);
     }
 
+    #[inline(always)]
     fn substitute(&mut self, right: impl Fn(usize) -> f64) {
         let (n, lu) = (self.n, &self.lu);
         for i in 0..n {
@@ -151,7 +167,11 @@ impl Lu {
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sum = [0.0; 4];
     let (x, y) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = x.remainder().iter().zip(y.remainder()).map(|(a, b)| a * b).sum();
+    // Loops, not closures: those may be compiled apart, without the features of the function around them.
+    let mut rest = -0.0;
+    for (a, b) in x.remainder().iter().zip(y.remainder()) {
+        rest += a * b;
+    }
     for (x, y) in x.zip(y) {
         for k in 0..4 {
             sum[k] += x[k] * y[k];

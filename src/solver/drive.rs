@@ -6,6 +6,7 @@
 
 use super::Mode;
 use super::law::{AxisInput, Knot, SERVO, Segment, WALL_LEFT, WALL_RIGHT, bounded};
+use crate::model::{Part, Parts};
 
 /// A servo that wants less than this has arrived, rad/s or m/s.
 const STILL: f64 = 1e-11;
@@ -36,33 +37,42 @@ pub(super) enum DriveLaw {
 }
 
 impl DriveLaw {
-    /// The law that the command of an axis asks for, in a step of `h` seconds.
-    pub fn of(input: &AxisInput, h: f64) -> Self {
+    /// The law that the command of an axis asks for, in a step of `h` seconds, without the parts that are `off`.
+    pub fn of(input: &AxisInput, h: f64, off: Parts) -> Self {
         let (limits, c) = (input.limits, &input.command);
         let given = |command: f64, own: f64| if command.is_nan() { own } else { command.abs().min(own) };
-        // A line that ends where it begins has no slope that a number can hold.
-        let speed = given(c.speed, limits.no_load_speed).max(SLOWEST);
+        let speed = || match off.has(Part::TorqueSpeedLine) {
+            true => f64::INFINITY,
+            // A line that ends where it begins has no slope that a number can hold.
+            false => given(c.speed, limits.no_load_speed).max(SLOWEST),
+        };
         match c.mode {
             Mode::Idle => Self::Idle,
-            Mode::Torque if c.torque == 0.0 || c.torque.is_nan() => Self::unpowered(input),
-            Mode::Torque => Self::Line { torque: bounded(c.torque, limits.max_torque), speed },
+            Mode::Torque if c.torque == 0.0 || c.torque.is_nan() => Self::unpowered(input, off),
+            Mode::Torque => Self::Line { torque: bounded(c.torque, limits.max_torque), speed: speed() },
             Mode::Servo => {
                 let torque = given(c.torque, limits.max_torque);
-                if torque == 0.0 {
-                    return Self::unpowered(input);
+                if torque == 0.0 || off.has(Part::Servo) {
+                    return Self::unpowered(input, off);
                 }
                 let bound = given(c.speed, limits.max_speed);
                 let wanted = bounded(approach(input, torque, h), bound);
                 let wanted = if wanted.abs() < STILL { 0.0 } else { wanted };
-                Self::Servo { wanted, torque, speed }
+                Self::Servo { wanted, torque, speed: speed() }
             }
         }
     }
 
     /// J-13 (g). The shorted motor's slope K²/R is that of its line at maximum voltage: (a)/(b).
-    fn unpowered(input: &AxisInput) -> Self {
+    fn unpowered(input: &AxisInput, off: Parts) -> Self {
+        if input.limits.short_brake { Self::shorted(input, off) } else { Self::Idle }
+    }
+
+    /// Of a drive that has one. By itself, so that one that has none does not ask whether it is switched off.
+    #[inline(never)]
+    fn shorted(input: &AxisInput, off: Parts) -> Self {
         let (torque, speed) = (input.limits.max_torque, input.limits.no_load_speed);
-        if input.limits.short_brake && torque.is_finite() && speed.is_finite() && speed > 0.0 {
+        if !off.has(Part::ShortBrake) && torque.is_finite() && speed.is_finite() && speed > 0.0 {
             Self::ShortBrake { slope: torque / speed }
         } else {
             Self::Idle

@@ -123,6 +123,23 @@ impl Scratch {
     /// Solves the linearised problem of n rows for the unknowns, refined once: so the softness only counts where nothing
     /// else does.
     fn solve(&mut self, n: usize) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine has just been asked for it.
+            return unsafe { self.solve_wide(n) };
+        }
+        self.solve_any(n);
+    }
+
+    /// [`Scratch::solve_any`] in wider registers: the same operations, the same bits.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn solve_wide(&mut self, n: usize) {
+        self.solve_any(n);
+    }
+
+    #[inline(always)]
+    fn solve_any(&mut self, n: usize) {
         let count = self.unknowns.len();
         if self.links.iter().all(|l| l.follows == NONE) {
             return self.solve_symmetric(n);
@@ -132,7 +149,9 @@ impl Scratch {
             for (unknown, factor) in self.moves(row) {
                 if unknown != NONE {
                     let (to, from) = (&mut self.moved[unknown * n..unknown * n + n], &self.a[row * n..row * n + n]);
-                    to.iter_mut().zip(from).for_each(|(to, a)| *to += factor * a);
+                    for (to, a) in to.iter_mut().zip(from) {
+                        *to += factor * a;
+                    }
                 }
             }
         }
@@ -143,7 +162,9 @@ impl Scratch {
         };
         for (i, u) in unknowns.iter().enumerate() {
             let row = &mut self.matrix[i * count..i * count + count];
-            row.iter_mut().zip(moved.chunks_exact(n)).for_each(|(to, v)| *to = along(u, v));
+            for (to, v) in row.iter_mut().zip(moved.chunks_exact(n)) {
+                *to = along(u, v);
+            }
             row[i] += u.stiffness;
         }
         let (matrix, a) = (&self.matrix[..count * count], &self.a);
@@ -155,11 +176,14 @@ impl Scratch {
     }
 
     /// The same where nothing slides: the matrix is a part of `Y Yᵀ + R`.
+    #[inline(always)]
     fn solve_symmetric(&mut self, n: usize) {
         let (count, unknowns) = (self.unknowns.len(), &self.unknowns);
         for (row, i) in self.matrix.chunks_exact_mut(count.max(1)).zip(unknowns) {
             let from = &self.a[i.row * n..i.row * n + n];
-            row.iter_mut().zip(unknowns).for_each(|(to, k)| *to = from[k.row]);
+            for (to, k) in row.iter_mut().zip(unknowns) {
+                *to = from[k.row];
+            }
         }
         let matrix = &self.matrix;
         let soft = |i: usize| SOFT * matrix[i * count + i];

@@ -107,7 +107,7 @@ impl Law {
             self.segments[0].slope = self.damping;
         }
         if effects.drives {
-            self.drive = DriveLaw::of(input, h);
+            self.drive = DriveLaw::of(input, h, effects.off);
         }
         if effects.limits {
             self.stops(input, (h, whole));
@@ -191,15 +191,21 @@ impl Law {
     }
 
     fn insert(&mut self, knot: Knot) {
-        if let Some(k) = self.knots[..self.count].iter_mut().find(|k| (k.speed - knot.speed).abs() <= SAME) {
-            k.drop += knot.drop;
-            k.steeper += knot.steeper;
-            k.kinds |= knot.kinds;
-            return;
+        let mut at = 0;
+        for k in &mut self.knots[..self.count] {
+            if (k.speed - knot.speed).abs() <= SAME {
+                k.drop += knot.drop;
+                k.steeper += knot.steeper;
+                k.kinds |= knot.kinds;
+                return;
+            }
+            at += usize::from(k.speed < knot.speed);
         }
-        let at = self.knots[..self.count].iter().take_while(|k| k.speed < knot.speed).count();
         if self.count < KNOTS {
-            self.knots.copy_within(at..self.count, at + 1);
+            // Mostly they come in order.
+            if at < self.count {
+                self.knots.copy_within(at..self.count, at + 1);
+            }
             self.knots[at] = knot;
             self.count += 1;
         }

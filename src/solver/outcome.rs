@@ -9,7 +9,6 @@ impl AxisSet {
     /// the state of the last pass.
     pub fn finish(&mut self, m: &Model, ws: &Workspace<f64>, q: &[f64], (h, qdd): (f64, &[f64])) {
         self.paid.fill((0.0, 0.0));
-        self.stopped.fill(false);
         self.settle_contests();
         self.damped = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
@@ -35,7 +34,6 @@ impl AxisSet {
         let (effort, total) = if place % 2 == 1 {
             let (total, speed) = (self.riser_torque(m, ws, i, qdd), law.knots[k].speed);
             self.memory[i] = law.knots[k].kinds;
-            self.stopped[i] = law.is_hard_stop(k);
             (law.drive_torque(speed, Some((k, total))), total)
         } else {
             let torques = (law.drive_torque(moved, None), law.on_segment(k, moved));
@@ -47,7 +45,7 @@ impl AxisSet {
         };
         self.brakes[i].drift = acceleration - self.brakes[i].mobility * effort;
         self.books.effort[i] = effort;
-        let pays = total - if self.stopped[i] { self.unpaid(i, end, total) } else { 0.0 };
+        let pays = total - if self.is_stopped(i) { self.unpaid(i, end, total) } else { 0.0 };
         self.paid[i] = (0.5 * h * pays * self.speed[i], 0.5 * h * pays * end);
         self.books.work.book(effort, total, 0.5 * h * (self.speed[i] + end));
     }
@@ -58,9 +56,10 @@ impl AxisSet {
         if wall * (self.speed[i] + end) > 0.0 { wall } else { 0.0 }
     }
 
-    /// Per axis: did it stand on a hard stop in the step that was finished last?
-    pub fn stopped(&self) -> &[bool] {
-        &self.stopped
+    /// Did an axis stand on a hard stop in the step that was finished last?
+    pub fn is_stopped(&self, axis: usize) -> bool {
+        let place = self.place[axis];
+        place % 2 == 1 && !self.rests(axis) && self.laws[axis].is_hard_stop(place / 2)
     }
 
     /// Work of the laws in the step that was finished last, J: with the speeds at its start, and at its end.

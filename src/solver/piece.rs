@@ -116,6 +116,7 @@ mod tests {
             name: "a".into(),
             kind: AxisKind::Rotary,
             slot: AxisSlot::Scalar { q: 0, v: 0 },
+            direction: crate::math::Vec3::z(),
             lower: f64::NEG_INFINITY,
             upper: f64::INFINITY,
             stop: Softness::HELD,

@@ -77,17 +77,11 @@ impl AxisSet {
     /// Ends an explicit step of `h` seconds at the state `s`: remembers who stands, writes efforts and work. `ws` and `qdd` are
     /// those of the last stage.
     pub fn finish_smooth(&mut self, m: &Model, ws: &Workspace<f64>, (s, h): (StateRef, f64), qdd: &[f64]) {
-        for (i, axis) in m.axes.iter().enumerate() {
-            let (_, v) = self.axis_state(m, axis, s);
-            let (k, law) = (self.place[i] / 2, &self.laws[i]);
-            let standing = self.place[i] % 2 == 1;
-            self.memory[i] = if standing { law.knots[k].kinds } else { 0 };
-            let riser = standing.then(|| (k, self.riser_torque(m, ws, i, qdd)));
-            self.books.effort[i] = law.drive_torque(v, riser);
-            if !standing {
-                let mean = 0.5 * (self.speed[i] + v);
-                self.books.work.book(law.drive_torque(mean, None), law.on_segment(k, mean), h * mean);
-            }
+        self.end_smooth(m, ws, s, qdd);
+        for (i, axis) in m.axes.iter().enumerate().filter(|(i, _)| self.place[*i].is_multiple_of(2)) {
+            let (law, mean) = (&self.laws[i], 0.5 * (self.speed[i] + self.axis_state(m, axis, s).1));
+            let total = law.on_segment(self.place[i] / 2, mean);
+            self.books.work.book(law.drive_torque(mean, None), total, h * mean);
         }
     }
 }

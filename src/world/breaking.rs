@@ -92,7 +92,7 @@ impl World {
         self.take(intact);
     }
 
-    fn take(&mut self, model: Arc<Model>) {
+    pub(super) fn take(&mut self, model: Arc<Model>) {
         self.kinematics = crate::dynamics::Kinematics::new(&model);
         self.breaking.watch = BreakWatch::new(&model);
         self.model = model;

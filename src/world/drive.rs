@@ -10,7 +10,8 @@ impl World {
     }
 
     /// Changes the drive of an axis, with effect from the next step; allocates nothing unless it is refused. An effect that
-    /// the scene did not call for when it was loaded (friction, rotor inertia) is switched on with it.
+    /// the scene did not call for when it was loaded (friction, rotor inertia) is switched on with it; resistances that are
+    /// switched off stay 0.
     ///
     /// # Errors
     /// Says which value is out of range; nothing changes then.
@@ -19,6 +20,7 @@ impl World {
             return Err(format!("axis {axis} does not exist; there are {}", self.model.axes.len()));
         };
         drive.check()?;
+        let drive = self.effects.drive_in_force(drive);
         *present = drive;
         self.engine.wake(&self.model);
         let called_for = Effects::called_for(&self.model);

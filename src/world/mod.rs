@@ -3,9 +3,14 @@
 mod breaking;
 mod contact;
 mod drive;
+mod elements;
+mod estimate;
+mod order;
 mod pose;
+mod rebuild;
 mod settings;
 mod snapshot;
+mod warnings;
 
 use crate::dynamics::{Energy, Kinematics, Momentum, energy, link_pose, link_twist, momentum};
 use crate::engine::{Engine, State, StepSettings};
@@ -16,16 +21,21 @@ use std::sync::Arc;
 pub use crate::solver::{AxisCommand, Mode, Work};
 pub use breaking::Broken;
 pub use contact::ContactPoint;
+pub use elements::{Element, ElementKind};
+pub use estimate::{Deviation, Largest, LocalEstimate};
+pub use order::{Order, checked_pose};
 pub use pose::Side;
-pub use settings::{EngineKind, Integrator, Settings};
+pub use rebuild::Condition;
+pub use settings::{ACCURACY, EngineKind, Integrator, Settings};
 pub use snapshot::{SHOWN_CONTACTS, Snapshot, Wrench};
+pub use warnings::{Warning, WarningKind, Warnings};
 
 /// Counters since the start; none of them is ever reset by a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
     /// Steps made.
     pub steps: u64,
-    /// RK4 steps that fell back to the implicit midpoint rule.
+    /// Steps of RK4 that fell back to the implicit midpoint rule, and steps of the extrapolation method whose rest did.
     pub fallback_steps: u64,
     /// Steps whose axis set did not settle within the iterations.
     pub unsettled_steps: u64,
@@ -63,6 +73,7 @@ pub struct World {
     /// What is left of the robot.
     model: Arc<Model>,
     breaking: breaking::Breaking,
+    history: rebuild::History,
     /// The model as it was before its fixed base was moved, if it was.
     unmoved: Option<Arc<Model>>,
     settings: Settings,
@@ -77,6 +88,7 @@ pub struct World {
     rest_ns: f64,
     stats: Stats,
     contacts: Vec<ContactPoint>,
+    warnings: Warnings,
 }
 
 impl World {
@@ -86,6 +98,7 @@ impl World {
     /// Says which setting is out of range.
     pub fn new(model: Arc<Model>, settings: Settings) -> Result<Self, String> {
         settings.check()?;
+        let model = model.in_force();
         let initial = State::initial(&model);
         let mut engine = settings.engine.build(&model, &initial)?;
         engine.prepare(&model, settings.integrator);
@@ -96,6 +109,7 @@ impl World {
             commands: vec![AxisCommand::IDLE; model.axes.len()],
             kinematics: Kinematics::new(&model),
             breaking: breaking::Breaking::new(&model),
+            history: rebuild::History::default(),
             model,
             unmoved: None,
             settings,
@@ -104,8 +118,10 @@ impl World {
             rest_ns: 0.0,
             stats: Stats::default(),
             contacts: vec![],
+            warnings: Warnings::default(),
         };
         world.reset();
+        world.warn_of_setup();
         Ok(world)
     }
 
@@ -127,20 +143,12 @@ impl World {
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), String> {
         settings.check()?;
         if settings.engine != self.settings.engine {
-            self.engine = self.rebuilt(&settings)?;
+            self.engine = self.built(&self.model, self.engine.state(), &settings)?;
         } else if settings.integrator != self.settings.integrator {
             self.engine.prepare(&self.model, settings.integrator);
         }
         self.settings = settings;
         Ok(())
-    }
-
-    fn rebuilt(&self, settings: &Settings) -> Result<Box<dyn Engine>, String> {
-        let mut engine = settings.engine.build(&self.model, self.engine.state())?;
-        engine.prepare(&self.model, settings.integrator);
-        engine.books_mut().drives.copy_from_slice(&self.engine.books().drives);
-        engine.books_mut().work = self.engine.books().work;
-        Ok(engine)
     }
 
     /// Sets the drive inputs of all axes, in the order of `Model::axes`; allocates nothing.
@@ -177,6 +185,7 @@ impl World {
     pub fn set_initial_state(&mut self, state: State) {
         self.initial = state;
         self.reset();
+        self.warn_of_setup();
     }
 
     /// Remembers where everything is now as the state that [`World::reset`] goes back to (B-13, B-14): poses
@@ -204,9 +213,10 @@ impl World {
         if self.settings.time_scale == 0.0 {
             return;
         }
+        self.begin_to_run();
         let step = self.step_settings();
         for to_come in (0..self.settings.steps_per_interval).rev() {
-            if self.stats.diverged_steps > 0 {
+            if self.stats.diverged_steps > 0 || self.history.faulty {
                 break;
             }
             self.watch_joints();
@@ -214,6 +224,7 @@ impl World {
             self.break_joints(&step, self.time() - f64::from(to_come) * step.h);
         }
         self.update();
+        self.warn_of_events();
     }
 
     fn step_settings(&self) -> StepSettings {
@@ -225,6 +236,7 @@ impl World {
             effects: self.effects,
             passes: s.solver_iterations,
             integrator: s.integrator,
+            accuracy: s.accuracy,
         }
     }
 
@@ -254,7 +266,19 @@ impl World {
 
     /// Back to the initial state and time 0; every axis in its mode at start, every joint whole. Allocates only if one was apart.
     pub fn reset(&mut self) {
+        self.reset_time();
+        self.reset_state();
+    }
+
+    /// Time is 0; everything stays where it is.
+    pub fn reset_time(&mut self) {
+        (self.interval, self.stamp_ns, self.rest_ns) = (0, 0, 0.0);
+    }
+
+    /// Back to the initial state, as [`World::reset`]; time goes on.
+    pub fn reset_state(&mut self) {
         self.mend_joints();
+        self.history.faulty = false;
         if let Some(model) = self.unmoved.take() {
             self.model = model;
         }
@@ -266,7 +290,6 @@ impl World {
                 Mode::Servo => AxisCommand::servo(self.initial.axis(&self.model, i).0),
             };
         }
-        (self.interval, self.stamp_ns, self.rest_ns) = (0, 0, 0.0);
         self.stats = Stats::default();
         self.update();
     }
@@ -285,9 +308,12 @@ impl World {
             position: vec![0.0; axes],
             velocity: vec![0.0; axes],
             effort: vec![0.0; axes],
+            commands: self.commands.clone(),
+            settings: self.settings,
             link_pose: vec![Pose::identity(); links],
             link_twist: vec![Twist::default(); links],
             cut_off: vec![false; links],
+            removed: vec![false; links],
             contacts: Vec::with_capacity(SHOWN_CONTACTS),
             link_wrench: vec![Wrench::default(); links],
             broken: Vec::with_capacity(self.breaking.intact.breakables.len()),
@@ -305,8 +331,12 @@ impl World {
             (s.position[i], s.velocity[i]) = state.axis(m, i);
         }
         s.effort.copy_from_slice(&self.engine.books().effort);
+        s.commands.copy_from_slice(&self.commands);
+        s.settings = self.settings;
+        s.cause = None;
         for link in 0..m.links.len() {
             s.link_pose[link] = link_pose(m, &self.kinematics, &state.q, &state.angles, link);
+            s.removed[link] = m.links[link].removed;
             s.cut_off[link] = m.links[link].parent.is_none() && !m.is_root(link);
             s.link_twist[link] = link_twist(m, &self.kinematics, (&state.q, &state.v), &state.angles, link);
         }
@@ -316,7 +346,13 @@ impl World {
         s.stats = self.stats;
         s.broken.clear();
         s.broken.extend_from_slice(self.broken());
+        (s.condition, s.warnings) = (self.condition(), self.warnings.count());
         s.finite = self.stats.diverged_steps == 0;
+    }
+
+    /// Simulated time, ns.
+    pub fn stamp_ns(&self) -> i64 {
+        self.stamp_ns
     }
 
     /// Simulated time, s.

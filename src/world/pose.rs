@@ -5,10 +5,12 @@ use crate::dynamics::{link_pose, normalize};
 use crate::math::{Mat3, Pose, Quat, Vec3};
 use crate::model::{AxisSlot, JointType};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Which side of a joint moves when its angle is set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Side {
     /// What hangs on the joint.
     Tip,
@@ -61,7 +63,7 @@ impl World {
         Ok(())
     }
 
-    fn link_pose(&self, link: usize) -> Pose {
+    pub(super) fn link_pose(&self, link: usize) -> Pose {
         let state = self.engine.state();
         link_pose(&self.model, &self.kinematics, &state.q, &state.angles, link)
     }
@@ -85,7 +87,7 @@ impl World {
         std::iter::successors(m.carrier(axis), parent).find(|i| m.bodies[*i].joint == JointType::Floating)
     }
 
-    fn move_floating(&mut self, body: usize, motion: &Pose) {
+    pub(super) fn move_floating(&mut self, body: usize, motion: &Pose) {
         let b = &self.model.bodies[body];
         let (x_wp, x_wb) = (self.body_pose(b.parent), self.body_pose(body));
         let x_pj = pose(&Mat3::from(b.tree_r), b.tree_p.into());
@@ -98,7 +100,7 @@ impl World {
         self.engine.place(&self.model, &state);
     }
 
-    fn body_pose(&self, body: usize) -> Pose {
+    pub(super) fn body_pose(&self, body: usize) -> Pose {
         pose(&Mat3::from(self.kinematics.r[body]), self.kinematics.p[body].into())
     }
 }

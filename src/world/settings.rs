@@ -3,7 +3,8 @@
 pub use crate::engine::{EngineKind, Integrator};
 
 /// Settings of a world.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Control interval in ns, before the time scale; 1 µs … 1 s.
     pub control_interval_ns: i64,
@@ -19,8 +20,19 @@ pub struct Settings {
     pub integrator: Integrator,
     /// Dynamics engine.
     pub engine: EngineKind,
+    /// What [`Integrator::Extrapolation`] may be wrong by after a second of its own errors alone: relative to 1 rad, m, rad/s, m/s and
+    /// the coordinate; 1e-14 … 1e-2. Recordings from before it was there do not have it.
+    #[serde(default = "usual_accuracy")]
+    pub accuracy: f64,
 }
 
+/// Of [`Settings::accuracy`].
+fn usual_accuracy() -> f64 {
+    1e-9
+}
+
+/// Range of [`Settings::accuracy`].
+pub const ACCURACY: (f64, f64) = (1e-14, 1e-2);
 /// Shorter steps drown in rounding, s.
 const SHORTEST_STEP: f64 = 1e-12;
 
@@ -34,6 +46,7 @@ impl Default for Settings {
             gravity: [0.0, 0.0, -9.80665],
             integrator: Integrator::default(),
             engine: EngineKind::default(),
+            accuracy: usual_accuracy(),
         }
     }
 }
@@ -54,6 +67,10 @@ impl Settings {
         ranged("steps_per_interval", f64::from(self.steps_per_interval), 1.0, 1000.0, "")?;
         ranged("solver_iterations", f64::from(self.solver_iterations), 1.0, 10_000.0, "")?;
         ranged("time_scale", self.time_scale, 0.0, 100.0, "")?;
+        let (finest, coarsest) = ACCURACY;
+        if !(finest..=coarsest).contains(&self.accuracy) {
+            return Err(format!("accuracy is {:e}; it must be from {finest:e} to {coarsest:e}", self.accuracy));
+        }
         let step = self.control_interval_ns as f64 * 1e-9 * self.time_scale / f64::from(self.steps_per_interval);
         if step > 0.0 && step < SHORTEST_STEP {
             return Err(format!(

@@ -1,8 +1,9 @@
 //! What a world shows after an interval. All buffers are made once; writing a snapshot allocates nothing.
 
-use super::ContactPoint;
+use super::{AxisCommand, ContactPoint, Order, Settings};
 use crate::math::{Pose, Twist, Vec3};
 use crate::model::Model;
+use std::sync::Arc;
 
 /// Contacts that a snapshot has room for.
 pub const SHOWN_CONTACTS: usize = 256;
@@ -29,12 +30,24 @@ pub struct Snapshot {
     pub velocity: Vec<f64>,
     /// Per axis, N·m or N: the drive torque really applied in the last step.
     pub effort: Vec<f64>,
+    /// Per axis: the inputs of its drive during the interval.
+    pub commands: Vec<AxisCommand>,
+    /// Settings during the interval.
+    pub settings: Settings,
+    /// What was done to the world, if this is not the end of an interval but shows the effect of an order.
+    pub cause: Option<Arc<Order>>,
     /// Per link, in the order of `Model::links`: frame in the world.
     pub link_pose: Vec<Pose>,
     /// Per link: velocity of the link frame's origin, along the link's own axes.
     pub link_twist: Vec<Twist>,
     /// Per link: has the joint to its parent come apart? Its frame is then one of the world's.
     pub cut_off: Vec<bool>,
+    /// Per link: has it been taken out of the world?
+    pub removed: Vec<bool>,
+    /// What can be said of the world as a whole.
+    pub condition: super::Condition,
+    /// Warnings that there have ever been ([`super::World::warnings`]).
+    pub warnings: u64,
     /// The joints that have come apart.
     pub broken: Vec<super::Broken>,
     /// J.

@@ -24,6 +24,7 @@ fn against_rbx(m: &Model, s: &State, commands: &[AxisCommand], h: f64) -> f64 {
         effects: m.effects,
         passes: 10_000,
         integrator: Integrator::SemiImplicitEuler,
+        accuracy: 1e-9,
     };
     let engines: [Box<dyn Engine>; 2] = [EngineKind::Rbx.build(m, s).unwrap(), EngineKind::Bullet.build(m, s).unwrap()];
     let [a, b] = engines.map(|mut e| {
@@ -199,6 +200,7 @@ fn a_joint_tells_the_force_that_goes_through_it() {
         effects: m.effects,
         passes: 50,
         integrator: Integrator::default(),
+        accuracy: 1e-9,
     };
     for _ in 0..100 {
         assert!(!engine.step(&m, &[AxisCommand::IDLE], &step).diverged);

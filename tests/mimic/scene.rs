@@ -9,8 +9,8 @@ use std::io::Write;
 use std::sync::Arc;
 
 pub const IMPLICIT: [Integrator; 2] = [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler];
-pub const ALL_INTEGRATORS: [Integrator; 3] =
-    [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler, Integrator::Rk4];
+pub const ALL_INTEGRATORS: [Integrator; 4] =
+    [Integrator::ImplicitMidpoint, Integrator::SemiImplicitEuler, Integrator::Rk4, Integrator::Extrapolation];
 
 /// A joint of a test robot: the link it carries is named as the joint, with `_link`.
 pub struct Part<'a> {

@@ -6,9 +6,13 @@ import os
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 os.environ.pop("ROS_LOCALHOST_ONLY", None)
 
+import fcntl
+import functools
+import itertools
 import random
 import signal
 import subprocess
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -32,6 +36,40 @@ LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability
 ROSOUT = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
+DOMAINS = range(102)
+"""Those that every DDS can use on Linux."""
+
+
+def _claim(wanted):
+    """Domains that no other run of these tests on this machine uses: each has a file that is locked until this process ends."""
+    folder = Path(tempfile.gettempdir()) / f"realnoid-domains-{os.getuid()}"
+    folder.mkdir(exist_ok=True)
+    claimed = []
+    for domain in random.sample(DOMAINS, len(DOMAINS)):
+        file = open(folder / str(domain), "w")
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            file.close()
+            continue
+        claimed.append((domain, file))
+        if len(claimed) == wanted:
+            break
+    assert claimed, "all ROS domains are in use by other tests"
+    return itertools.cycle(claimed)
+
+
+@functools.cache
+def _domains():
+    # Enough that one that a killed node was in is not used again before others have forgotten it; few enough for six processes.
+    return _claim(16)
+
+
+def free_domain():
+    """A ROS domain in which nothing else is."""
+    return next(_domains())[0]
+
+
 def nanoseconds(stamp):
     return stamp.sec * 10**9 + stamp.nanosec
 
@@ -47,15 +85,27 @@ def wait_until(condition, timeout=5.0, what="the condition"):
     raise AssertionError(f"waited {timeout} s in vain for {what}")
 
 
+def until_heard(publish, heard, what):
+    """Publishes again every half second until `heard()`: what is published before both sides have found each other comes late."""
+    for _ in range(10):
+        publish()
+        try:
+            return wait_until(heard, timeout=0.5, what=what)
+        except AssertionError:
+            continue
+    raise AssertionError(f"waited in vain for {what}")
+
+
 class Simulator:
     """The running binary."""
 
-    def __init__(self, *arguments, domain, urdf=ARM, environment=None):
-        command = [str(BINARY), "run"] + ([str(urdf)] if urdf else [])
+    def __init__(self, *arguments, domain, urdf=ARM, environment=None, options=(), **process):
+        """`arguments` are ROS's, `options` our own; `process` goes to Popen."""
+        command = [str(BINARY), "run"] + ([str(urdf)] if urdf else []) + [str(o) for o in options]
         ros = ["--ros-args", *map(str, arguments)] if arguments else []
         variables = {**os.environ, "ROS_DOMAIN_ID": str(domain), **(environment or {})}
         self.process = subprocess.Popen(
-            command + ros, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            command + ros, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **process
         )
         self.output = self.errors = ""
 
@@ -134,7 +184,7 @@ class Bench:
     """A simulator and a probe in a domain of their own, with the streams that most tests look at."""
 
     def __init__(self, *arguments, topic="joint_states", **options):
-        self.domain = random.randint(0, 101)
+        self.domain = free_domain()
         self.probe = Probe(self.domain)
         self.states = self.probe.listen(JointState, topic)
         self.diagnostics = self.probe.listen(DiagnosticArray, "/diagnostics")
@@ -142,7 +192,8 @@ class Bench:
         self.simulator = Simulator(*arguments, domain=self.domain, **options)
 
     def wait_for_first_sample(self):
-        wait_until(lambda: self.states or self.simulator.process.poll() is not None, what="the first JointState")
+        done = lambda: self.states or self.simulator.process.poll() is not None
+        wait_until(done, timeout=15, what="the first JointState")
         assert self.states, self.simulator.process.communicate()[1]
         return self
 

@@ -7,6 +7,14 @@ import subprocess
 from conftest import BINARY
 
 ORIGIN = BINARY.parents[2] / "urdf/origin.urdf"
+BLOCK = """<robot name="block"><link name="block">
+  <realnoid>
+    <body specific_gravity="0.5"><shape><box size="0.2 0.2 0.2"/></shape></body>
+    <monitor frame="{frame}"/>
+  </realnoid>
+</link></robot>
+"""
+"""4 kg, with a monitor in a `frame`."""
 
 
 def run(urdf, *arguments, **options):

@@ -1,12 +1,11 @@
 """Names, domains, signals and wrong arguments."""
 
 import os
-import random
 import signal
 import subprocess
 
 import pytest
-from conftest import ARM, BINARY, LATCHED, Probe, Simulator, wait_until
+from conftest import ARM, BINARY, LATCHED, Probe, Simulator, free_domain, wait_until
 from geometry_msgs.msg import TwistStamped
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -55,7 +54,7 @@ def test_what_is_simulated_is_printed_at_start(start):
 
 def test_domains_are_apart(start):
     bench = start()
-    other = Probe((bench.domain + 1 + random.randint(0, 50)) % 102)
+    other = Probe(free_domain())
     try:
         states = other.listen(JointState, "joint_states")
         here = len(bench.states)
@@ -66,7 +65,7 @@ def test_domains_are_apart(start):
 
 
 def test_discovery_range_off_hides_the_node():
-    domain = random.randint(0, 101)
+    domain = free_domain()
     simulator = Simulator(domain=domain, environment={"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"})
     probe = Probe(domain)
     try:

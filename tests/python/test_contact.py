@@ -13,18 +13,11 @@ from geometry_msgs.msg import TwistStamped, WrenchStamped
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 from rosgraph_msgs.msg import Clock
-from simulation import ORIGIN, columns, refused, simulate
+from simulation import BLOCK, ORIGIN, columns, refused, simulate
 
 ROOT = BINARY.parents[2]
 LEG_AND_BALL = ROOT / "config/leg_and_ball.yaml"
 G = 9.80665
-BLOCK = """<robot name="block"><link name="block">
-  <realnoid>
-    <body specific_gravity="0.5"><shape><box size="0.2 0.2 0.2"/></shape></body>
-    <monitor frame="{frame}"/>
-  </realnoid>
-</link></robot>
-"""
 WEIGHT = 0.5 * 1000 * 0.2**3 * G
 
 

@@ -8,6 +8,7 @@ import yaml
 from conftest import BINARY, HERE, nanoseconds, wait_until
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
 
 DEFAULTS = yaml.safe_load((HERE / "../../config/default.yaml").read_text())["/**"]["ros__parameters"]
 
@@ -18,6 +19,10 @@ def test_list_get_and_types_agree_with_the_default_file(bench):
     assert set(names) == set(DEFAULTS) | {"axes"}
     assert {name: bench.probe.get(client, name) for name in DEFAULTS} == DEFAULTS
     assert bench.probe.call(lambda: client.list_parameters(["tf_rate"], 0)).result.names == ["tf_rate"]
+    for prefixes, depth, some in ((["effects"], 0, "effects.gravity"), (["effects"], 1, "effects.contact"), ([], 2, "effects.mimic")):
+        listed = bench.probe.call(lambda: client.list_parameters(prefixes, depth)).result
+        assert some in listed.names and listed.prefixes == ["effects"]
+    assert not any("." in name for name in bench.probe.call(lambda: client.list_parameters([], 1)).result.names)
     assert list(bench.probe.call(lambda: client.get_parameter_types(["gravity", "nonsense"])).types) == [8, 0]
 
 
@@ -97,6 +102,29 @@ def test_parameter_file_sections_and_later_assignments(start, tmp_path):
     assert values == [8.0, 0.5, 20]
 
 
+@pytest.mark.parametrize("written", ["off", "'off'"])
+def test_effects_are_switched_at_start(start, tmp_path, written):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text("version: 1\nworld: {effects: {limits: true, gravity: false}}\n")
+    bench = start("-p", f"scene:={scene}", "-p", f"effects.limits:={written}", "-p", "effects.friction:=on")
+    client = bench.probe.parameters()
+    values = {name: bench.probe.get(client, f"effects.{name}") for name in ("limits", "friction", "gravity")}
+    assert values == {"limits": "off", "friction": "on", "gravity": "auto"}
+    bench.probe.publisher(JointState, "joint_command").publish(JointState(name=["knee"], effort=[5.0]))
+    wait_until(lambda: bench.axis("knee")[0] > 2.5, what="the knee beyond its stop")
+    [result] = bench.probe.set(client, **{"effects.limits": "on"})
+    assert not result.successful and "effects.limits" in result.reason and "at start only" in result.reason
+
+
+def test_an_effect_that_is_switched_to_nonsense_is_refused():
+    for argument, reason in (
+        ("effects.limits:=maybe", "parameter 'effects.limits' = maybe is out of range: auto | on | off"),
+        ("effects.magic:=on", "there is no parameter 'effects.magic'"),
+    ):
+        result = run("--ros-args", "-p", argument)
+        assert result.returncode == 2 and reason in result.stderr, result.stderr
+
+
 def run(*arguments):
     return subprocess.run([BINARY, "run", *map(str, arguments)], capture_output=True, text=True, timeout=10)
 
@@ -116,3 +144,12 @@ def test_a_bad_parameter_file_is_told_with_its_line(tmp_path, text, message):
     result = run("--ros-args", "--params-file", file)
     assert result.returncode == 2
     assert message in result.stderr, result.stderr
+
+
+def test_all_parameters_are_described_at_once(bench):
+    """A reply in many fragments: docs/decisions/0032."""
+    client = bench.probe.parameters()
+    names = bench.probe.call(lambda: client.list_parameters()).result.names
+    descriptors = bench.probe.call(lambda: client.describe_parameters(names)).descriptors
+    assert [d.name for d in descriptors] == list(names)
+    assert sum(len(d.description) for d in descriptors) > 1500

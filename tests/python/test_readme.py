@@ -1,21 +1,18 @@
 """What the documents say is so: commands are run, clients are tried, tables and links are compared."""
 
-import functools
 import json
 import os
-import random
 import re
-import runpy
 import shlex
 import signal
 import subprocess
 import sys
-import types
 from pathlib import Path
 
 import pytest
 import yaml
-from conftest import BINARY, Simulator, wait_until
+from conftest import BINARY, Simulator, free_domain, wait_until
+from launched import Launched
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text()
@@ -48,7 +45,7 @@ def ended(arguments, folder, pipe):
 
 def node_output():
     """What the node prints from start to SIGINT."""
-    simulator = Simulator(domain=random.randint(0, 101), urdf=None)
+    simulator = Simulator(domain=free_domain(), urdf=None)
     output = simulator.process.stdout
     first = list(until_last_topic(output))
     simulator.process.send_signal(signal.SIGINT)
@@ -184,51 +181,11 @@ def test_swing_leg_swings_the_leg_and_writes_the_twist(start, tmp_path):
 # Launch files, with an imitation of what they use of `launch`
 
 
-class Launched:
-    """Declared arguments and commands of a launch file, as `ros2 launch FILE NAME:=VALUE …` would make them."""
-
-    def __init__(self, monkeypatch, path, **given):
-        self.values, self.commands = dict(given), []
-        actions = ("DeclareLaunchArgument", "ExecuteProcess", "IncludeLaunchDescription")
-        members = {
-            "launch": {"LaunchDescription": list},
-            "launch.actions": {name: functools.partial(lambda name, *a, **k: (name, a, k), name) for name in actions},
-            "launch.substitutions": {"LaunchConfiguration": lambda name: ("value", name)},
-            "launch.launch_description_sources": {"PythonLaunchDescriptionSource": str},
-        }
-        for name, content in members.items():
-            module = types.ModuleType(name)
-            vars(module).update(content)
-            monkeypatch.setitem(sys.modules, name, module)
-        self.visit(path)
-
-    def visit(self, path):
-        for kind, arguments, options in runpy.run_path(str(path))["generate_launch_description"]():
-            getattr(self, kind)(*arguments, **options)
-
-    def text(self, part):
-        if isinstance(part, tuple):
-            return self.values[part[1]]
-        return "".join(map(self.text, part)) if isinstance(part, list) else part
-
-    def DeclareLaunchArgument(self, name, default_value, description):
-        assert description
-        self.values.setdefault(name, self.text(default_value))
-
-    def IncludeLaunchDescription(self, path, launch_arguments):
-        self.values.update((name, self.text(value)) for name, value in launch_arguments)
-        self.visit(path)
-
-    def ExecuteProcess(self, cmd, output):
-        assert output == "screen"
-        self.commands.append([self.text(part) for part in cmd])
-
-
 @pytest.mark.parametrize("name, facts", [("bench", ["base fixed", "-9.80665]"]), ("free", ["base free", "gravity [0.0, 0.0, 0.0]"])])
 def test_launch_files_make_a_command_that_starts_the_node(name, facts, monkeypatch):
     monkeypatch.setenv("REALNOID_BIN", str(BINARY))
     [command] = Launched(monkeypatch, SCRIPTS / f"{name}.launch.py", namespace="/stand").commands
-    variables = {**os.environ, "ROS_DOMAIN_ID": str(random.randint(0, 101))}
+    variables = {**os.environ, "ROS_DOMAIN_ID": str(free_domain())}
     node = subprocess.Popen(command, env=variables, stdout=subprocess.PIPE, text=True)
     report = "".join(until_last_topic(node.stdout))
     node.terminate()
@@ -245,11 +202,13 @@ def test_the_parameter_table_is_the_default_file():
     defaults = yaml.safe_load((ROOT / "config/default.yaml").read_text())["/**"]["ros__parameters"]
     shown = {name.strip("`"): yaml.safe_load(default) for name, default, *_ in rows("## Parameters")}
     assert shown.pop("axes") is None
+    effects = {name: defaults.pop(name) for name in list(defaults) if name.startswith("effects.")}
+    assert effects and set(effects.values()) == {shown.pop("effects.NAME")}
     assert shown == defaults
     help_text = subprocess.check_output([BINARY, "run", "--help"], text=True)
     for name, _, accepted, _ in rows("## Parameters"):
         bounds = re.match(r"(\S+ … [0-9.]+)", accepted)
-        entry = re.search(rf"  {name.strip('`')} .*?\n.*?\[(.*)\]\n", help_text)[1]
+        entry = re.search(rf"  {name.strip('`').replace('NAME', 'gravity')} .*?\n.*?\[(.*)\]\n", help_text)[1]
         assert not bounds or bounds[1] in entry, name
         assert ("at start only" in accepted) == ("at start only" in entry), name
 

@@ -48,7 +48,7 @@ def test_twists_in_the_frame_that_the_monitor_tag_asks_for(bench):
         turning = sum(by_stamp[nanoseconds(twist.header.stamp)].velocity[:axes_before])
         assert math.isclose(twist.twist.angular.z, turning, rel_tol=1e-9, abs_tol=1e-9)
     check_linear_velocity_of_the_knee(twists["shank"], by_stamp)
-    assert bench.logged("foot-sole"), "the changed topic name is said in the log"
+    assert wait_until(lambda: bench.logged("foot-sole"), what="the changed topic name in the log")
 
 
 def check_linear_velocity_of_the_knee(messages, by_stamp):

@@ -56,6 +56,7 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         couplings: vec![],
         breakables: vec![],
         chains: vec![],
+        joints: vec![],
         rigs: vec![],
         dampings: vec![],
         joined: vec![],
@@ -111,6 +112,9 @@ fn add_axes(m: &mut Model) {
         membership: None,
         deactivation: None,
         mass: 0.0,
+        removed: false,
+        center: Vec3::zeros(),
+        inertia: Mat3::zeros(),
         frame: LinkFrame::OnBody { body: 0, offset: realnoid::math::Pose::identity() },
     });
     for b in &m.bodies[1..] {
@@ -127,6 +131,7 @@ fn axis(b: &Body, k: usize) -> Axis {
         name: format!("axis_{}", b.v + k),
         kind: if b.joint == JointType::Prismatic { AxisKind::Linear } else { AxisKind::Rotary },
         slot: AxisSlot::Scalar { q: b.q + k, v: b.v + k },
+        direction: Vec3::z(),
         lower: f64::NEG_INFINITY,
         upper: f64::INFINITY,
         stop: Softness { erp: 0.2, cfm: 0.0 },

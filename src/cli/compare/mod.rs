@@ -68,7 +68,7 @@ impl Contest {
         }
         let kinds = kinds(&args.engine).map_err(usage)?;
         // What an engine does not honour is told of each, later; rbx honours it all.
-        let Start { world, script, intervals, every, mut warnings } =
+        let Start { world, script, intervals, every, mut warnings, .. } =
             Start::new(&args.run, Some(EngineKind::Rbx.name()), args.every)?;
         let model = world.model().clone();
         let fine = |name, finer| Contender::fine(name, &world, &script, finer).map_err(usage);
@@ -199,6 +199,16 @@ fn create(flag: &str, path: &Path) -> Result<File, String> {
     File::create(path).map_err(|e| unwritten(flag, path, &e))
 }
 
-fn unwritten(flag: &str, path: &Path, cause: &std::io::Error) -> String {
+/// Writes a file, if one was asked for.
+///
+/// # Errors
+/// Exit code, flag, file and cause.
+pub(super) fn write(flag: &str, file: Option<&Path>, text: impl FnOnce() -> String) -> Result<(), (u8, String)> {
+    let Some(file) = file else { return Ok(()) };
+    std::fs::write(file, text()).map_err(|e| (1, unwritten(flag, file, &e)))
+}
+
+/// Why there is no file.
+pub(super) fn unwritten(flag: &str, path: &Path, cause: &std::io::Error) -> String {
     format!("{flag} {}: cannot write the file: {cause}", path.display())
 }

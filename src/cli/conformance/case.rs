@@ -10,7 +10,7 @@ use crate::cli::script::Script;
 use crate::engine::State;
 use crate::math::Vec3;
 use crate::model::{AxisKind, Base, Model};
-use crate::world::{EngineKind, Settings, World};
+use crate::world::{EngineKind, Integrator, Settings, World};
 use serde_json::Value;
 use serde_saphyr::Spanned;
 use std::collections::BTreeMap;
@@ -42,6 +42,15 @@ pub struct Case {
     pub(super) script: Script,
     /// Control intervals.
     pub(super) intervals: u64,
+}
+
+/// With what a case is run instead of what its scene says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rung {
+    /// Of rbx.
+    pub integrator: Integrator,
+    /// Control interval and step in one, ns.
+    pub step_ns: i64,
 }
 
 /// When an expectation is looked at.
@@ -112,20 +121,31 @@ impl Case {
     /// # Errors
     /// Names the file, the line, and what makes no sense there.
     pub fn read(path: &Path) -> Result<Self, String> {
+        Self::read_at(path, None)
+    }
+
+    /// Reads a file, to be run with this integrator and step.
+    ///
+    /// # Errors
+    /// As [`Self::read`]; also if a time of the case is no multiple of the step.
+    pub fn read_at(path: &Path, rung: Option<Rung>) -> Result<Self, String> {
         let told = |reason: String| format!("{}: {reason}", path.display());
         let text = crate::cli::check::read_text(path)?;
         let file: CaseFile = serde_saphyr::from_str(&text).map_err(|e| told(plain(&e.to_string())))?;
-        Self::checked(file, path).map_err(told)
+        Self::checked(file, path, rung).map_err(told)
     }
 
-    fn checked(file: CaseFile, path: &Path) -> Result<Self, String> {
+    fn checked(file: CaseFile, path: &Path, rung: Option<Rung>) -> Result<Self, String> {
         if file.version != 1 {
             return Err(format!("version is {}; it must be 1", file.version));
         }
         let needs: Result<Vec<&'static str>, String> = file.needs.iter().map(need).collect();
         let needs = needs?;
         let scene = scene(file.scene, file.scene_file, path)?;
-        let settings = Settings { engine: EngineKind::default(), ..scene.settings };
+        let mut settings = Settings { engine: EngineKind::default(), ..scene.settings };
+        if let Some(Rung { integrator, step_ns }) = rung {
+            settings = Settings { integrator, control_interval_ns: step_ns, steps_per_interval: 1, ..settings };
+        }
         let stand = (scene.base.unwrap_or(Base::Fixed), scene.robot.pose);
         let all = assemble(&scene, Source::default(), stand, Spare::Nobody, &|m| scene.switch_effects(m));
         let all = all.map_err(|(Fault::Robot(reason) | Fault::Scene(reason))| reason)?;
@@ -145,7 +165,8 @@ impl Case {
         for (i, entry) in file.expect.into_iter().enumerate() {
             let place = format!("line {}: expect[{i}] '{}'", entry.defined.line(), entry.value.quantity);
             let told = |reason: String| format!("{place}: {reason}");
-            let reader = Reader { model: &model, names: &names, needs: &needs, interval, intervals };
+            let integrator = settings.integrator.name();
+            let reader = Reader { model: &model, names: &names, needs: &needs, interval, intervals, integrator };
             let expectation = reader.expectation(entry.value).map_err(told)?;
             if expectations.iter().any(|e| e.name == expectation.name) {
                 return Err(told(format!("'{}' is there twice; give one of them another name", expectation.name)));
@@ -256,6 +277,7 @@ struct Reader<'a> {
     needs: &'a [&'static str],
     interval: f64,
     intervals: u64,
+    integrator: &'static str,
 }
 
 impl Reader<'_> {
@@ -279,10 +301,10 @@ impl Reader<'_> {
         }
         let value = self.value(&e.is, part)?;
         let within = self.within(&e)?;
-        if let Some(name) = e.beyond.keys().find(|name| EngineKind::by_name(name).is_none()) {
+        if let Some(name) = e.beyond.keys().find(|name| !known(name)) {
             return Err(format!("beyond: there is no engine '{name}'"));
         }
-        let (theory, because, beyond) = (e.theory, e.because, e.beyond);
+        let (theory, because, beyond) = (e.theory, e.because, self.of_integrator(e.beyond));
         let names = self.names.clone();
         Ok(Expectation { name, theory, because, beyond, probe, count, when, value, within, names })
     }
@@ -325,7 +347,7 @@ impl Reader<'_> {
     fn within(&self, e: &Expected) -> Result<BTreeMap<String, Formula>, String> {
         let mut within = BTreeMap::new();
         for (name, value) in &e.within {
-            if name != "others" && EngineKind::by_name(name).is_none() {
+            if name != "others" && !known(name) {
                 return Err(format!("within: there is no engine '{name}'"));
             }
             let formula = Formula::read(value, self.names).map_err(|reason| format!("within: {name}: {reason}"))?;
@@ -335,9 +357,23 @@ impl Reader<'_> {
         let mut kinds = EngineKind::NAMES.iter().map(|(_, kind)| *kind).filter(can);
         match kinds.find(|kind| !within.contains_key(kind.name()) && !within.contains_key("others")) {
             Some(kind) => Err(format!("within: the engine {} has no tolerance; add it, or others", kind.name())),
-            None => Ok(within),
+            None => Ok(self.of_integrator(within)),
         }
     }
+
+    /// What is said of rbx with the integrator of the run is said of rbx.
+    fn of_integrator<T>(&self, mut said: BTreeMap<String, T>) -> BTreeMap<String, T> {
+        if let Some(own) = said.remove(self.integrator) {
+            said.insert(EngineKind::Rbx.name().into(), own);
+        }
+        said.retain(|name, _| Integrator::by_name(name).is_none());
+        said
+    }
+}
+
+/// Engines, and integrators of rbx.
+fn known(name: &str) -> bool {
+    EngineKind::by_name(name).is_some() || Integrator::by_name(name).is_some()
 }
 
 fn part(about: &About, name: Option<&str>) -> Result<Part, String> {
@@ -381,6 +417,16 @@ fn automatic(e: &Expected, when: &When) -> String {
 /// # Errors
 /// Every file that cannot be read, a line each.
 pub fn cases(path: &Path) -> Result<Vec<Case>, String> {
+    let (good, bad): (Vec<_>, Vec<_>) = files(path)?.iter().map(|f| Case::read(f)).partition(Result::is_ok);
+    let reasons: Vec<String> = bad.into_iter().filter_map(Result::err).collect();
+    if reasons.is_empty() { Ok(good.into_iter().flatten().collect()) } else { Err(reasons.join("\n")) }
+}
+
+/// The case files of a folder in the order of their names, or a single file.
+///
+/// # Errors
+/// There is none, or the folder cannot be read.
+pub fn files(path: &Path) -> Result<Vec<PathBuf>, String> {
     let told = |e: std::io::Error| format!("cannot read '{}': {e}", path.display());
     let mut files: Vec<PathBuf> = vec![path.to_owned()];
     if path.is_dir() {
@@ -392,7 +438,5 @@ pub fn cases(path: &Path) -> Result<Vec<Case>, String> {
     if files.is_empty() {
         return Err(format!("'{}': there is no case in it, no file NAME.yaml", path.display()));
     }
-    let (good, bad): (Vec<_>, Vec<_>) = files.iter().map(|f| Case::read(f)).partition(Result::is_ok);
-    let reasons: Vec<String> = bad.into_iter().filter_map(Result::err).collect();
-    if reasons.is_empty() { Ok(good.into_iter().flatten().collect()) } else { Err(reasons.join("\n")) }
+    Ok(files)
 }

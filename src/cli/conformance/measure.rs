@@ -4,7 +4,7 @@ use super::case::{Case, Expectation, When};
 use super::quantity::{Beginning, Quantity};
 use crate::cli::bench::cpu_seconds;
 use crate::math::Vec3;
-use crate::world::{EngineKind, Settings, Snapshot, World};
+use crate::world::{EngineKind, Settings, Snapshot, Stats, World};
 
 /// An engine that is known to be beyond its tolerance may be so many times further away than its case says. (It may be nearer: what a contact that
 /// chatters shows at an instant is different on another processor.)
@@ -30,6 +30,8 @@ pub struct Run {
     pub figures: Vec<Figure>,
     /// CPU time per simulated second, s.
     pub cpu: f64,
+    /// What the engine counted.
+    pub stats: Stats,
 }
 
 /// A quantity beside theory, at the instant where it misses it by most, compared with what is allowed there.
@@ -71,6 +73,13 @@ impl Verdict {
             Self::Beyond => "beyond",
             Self::Mended => "mended",
         }
+    }
+}
+
+impl Figure {
+    /// The error, as a multiple of what is allowed.
+    pub fn share(&self) -> f64 {
+        if self.error == 0.0 { 0.0 } else { self.error / self.allowed }
     }
 }
 
@@ -121,7 +130,7 @@ impl Case {
             }
         }
         let figures = watches.into_iter().map(|w| w.figure(engine, world.time())).collect();
-        Run { figures, cpu: if self.intervals > 0 { cpu / world.time() } else { 0.0 } }
+        Run { figures, cpu: if self.intervals > 0 { cpu / world.time() } else { 0.0 }, stats: world.stats() }
     }
 }
 
@@ -165,8 +174,7 @@ impl<'a> Watch<'a> {
 
     /// Keeps the worse of two; what is not a number is worst.
     fn take(&mut self, f: Figure) {
-        let share = |f: &Figure| if f.error == 0.0 { 0.0 } else { f.error / f.allowed };
-        if self.worst.is_none_or(|worst| share(&worst) < share(&f) || share(&f).is_nan()) {
+        if self.worst.is_none_or(|worst| worst.share() < f.share() || f.share().is_nan()) {
             self.worst = Some(f);
         }
     }

@@ -11,13 +11,13 @@ mod quantity;
 mod report;
 
 use super::args::EnginesArgs;
-use super::compare::kinds;
+use super::compare::{kinds, write};
 use super::outcome::Progress;
 use crate::engine::EngineKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
-pub use case::{Case, Expectation, cases};
+pub use case::{Case, Expectation, Rung, cases, files};
 pub use file::Beyond;
 pub use measure::{DRIFT, Figure, Outcome, Run, Verdict};
 pub use page::{machine, page};
@@ -85,13 +85,8 @@ fn measured(args: &EnginesArgs, path: &Path) -> Result<ExitCode, (u8, String)> {
     let mut progress = Progress::new();
     let results = Results::of(cases, &engines, &mut |done, all| progress.show(done, all));
     progress.clear();
-    let write = |flag: &str, file: &Option<PathBuf>, text: &dyn Fn() -> String| match file {
-        Some(file) => std::fs::write(file, text())
-            .map_err(|e| (1, format!("{flag} {}: cannot write the file: {e}", file.display()))),
-        None => Ok(()),
-    };
-    write("--csv", &args.csv, &|| csv::csv(&results))?;
-    write("--markdown", &args.markdown, &|| page(&results, path, &machine()))?;
+    write("--csv", args.csv.as_deref(), || csv::csv(&results))?;
+    write("--markdown", args.markdown.as_deref(), || page(&results, path, &machine()))?;
     let text = if args.json { format!("{:#}\n", report::json(&results)) } else { report::tables(&results) };
     let said = super::say(&text);
     Ok(if results.fail() { ExitCode::FAILURE } else { said })

@@ -1,5 +1,6 @@
 //! What can be looked at in a world.
 
+use crate::cli::simulate::unaccounted;
 use crate::dynamics::Momentum;
 use crate::math::Vec3;
 use crate::model::Model;
@@ -36,6 +37,7 @@ pub(super) enum Quantity {
     KineticEnergyRatio,
     TotalEnergy,
     EnergyGain,
+    EnergyUnaccounted,
     Momentum,
     AngularMomentum,
     AngularMomentumRatio,
@@ -67,7 +69,7 @@ const fn about(
 }
 
 /// All that there are.
-pub(super) const QUANTITIES: [About; 19] = [
+pub(super) const QUANTITIES: [About; 20] = [
     about(
         "position",
         Quantity::Position,
@@ -103,6 +105,15 @@ pub(super) const QUANTITIES: [About; 19] = [
     about("kinetic_energy_ratio", Quantity::KineticEnergyRatio, (Owner::World, false), ("1", "against the start")),
     about("total_energy", Quantity::TotalEnergy, (Owner::World, false), ("J", "kinetic and potential")),
     about("energy_gain", Quantity::EnergyGain, (Owner::World, false), ("J", "of the total energy since the start")),
+    about(
+        "energy_unaccounted",
+        Quantity::EnergyUnaccounted,
+        (Owner::World, false),
+        (
+            "J",
+            "energy gained since the start, less the work of drives, plus what was lost: the error of the integrator",
+        ),
+    ),
     about("momentum", Quantity::Momentum, (Owner::World, true), ("N·s", "of everything")),
     about(
         "angular_momentum",
@@ -248,6 +259,7 @@ impl Probe {
             Quantity::KineticEnergyRatio => one(s.kinetic_energy / start.kinetic),
             Quantity::TotalEnergy => one(s.kinetic_energy + s.potential_energy),
             Quantity::EnergyGain => one(s.kinetic_energy + s.potential_energy - start.total),
+            Quantity::EnergyUnaccounted => one(unaccounted(w, start.total)),
             Quantity::Momentum => self.part.of(w.momentum().linear),
             Quantity::AngularMomentum => self.part.of(w.momentum().angular),
             Quantity::AngularMomentumRatio => one(w.momentum().angular.norm() / start.momentum.angular.norm()),

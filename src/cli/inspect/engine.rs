@@ -1,6 +1,5 @@
 //! What an engine makes of a model, and what it does not honour of it.
 
-use super::world::form;
 use crate::engine::{EngineKind, by_kind, shape_name, shortfalls};
 use crate::model::Model;
 use serde_json::{Value, json};
@@ -20,7 +19,7 @@ pub(super) fn table(kind: EngineKind, m: &Model) -> String {
     let mut shapes: Vec<(String, usize)> = vec![];
     for c in &m.colliders {
         let Some(theirs) = shape_name(kind, &c.form) else { continue };
-        let row = format!("{} -> {theirs}", form(&c.form));
+        let row = format!("{} -> {theirs}", c.form.name());
         match shapes.iter_mut().find(|(known, _)| *known == row) {
             Some((_, count)) => *count += 1,
             None => shapes.push((row, 1)),
@@ -34,7 +33,7 @@ pub(super) fn table(kind: EngineKind, m: &Model) -> String {
 pub(super) fn json(kind: EngineKind, m: &Model) -> Value {
     let item = |s: crate::engine::Shortfall| json!({"element": s.element, "item": s.item, "instead": s.instead});
     let shape = |c: &crate::model::Collider| {
-        shape_name(kind, &c.form).map(|theirs| json!({"name": c.name, "form": form(&c.form), "shape": theirs}))
+        shape_name(kind, &c.form).map(|theirs| json!({"name": c.name, "form": c.form.name(), "shape": theirs}))
     };
     json!({"name": kind.name(), "not_honoured": shortfalls(kind, m).into_iter().map(item).collect::<Vec<_>>(),
            "shapes": m.colliders.iter().filter_map(shape).collect::<Vec<_>>()})

@@ -5,14 +5,14 @@ use super::groups;
 use crate::description::{Description, Link, PlacedShape};
 use crate::mass::{LinkBody, Method};
 use crate::math::{Mat3, Pose};
-use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_NAMES, Effects, LinkInfo};
+use crate::model::{Axis, AxisKind, AxisSlot, Kind, LinkInfo, Listed};
 use crate::monitor::{LinkValues, axis_faults, joint_link_values, link_values};
 use crate::shape::collision_shapes;
 use serde_json::{Value, json};
 
 /// SI units, links in their own frames; `principal_axes[i]` is the axis of `principal_moments[i]`, `shapes` tells how the mass
 /// of each shape was found. `links` are those of the URDF, `joint_links` what each axis moves as one body.
-pub(super) fn json(l: &Loaded, effects: &Effects) -> Value {
+pub(super) fn json(l: &Loaded, effects: &[Listed]) -> Value {
     let m = &l.model;
     let values = link_values(m, &l.bodies);
     let links = l.description.links.iter().zip(&m.links).zip(l.bodies.iter().zip(&values));
@@ -24,12 +24,23 @@ pub(super) fn json(l: &Loaded, effects: &Effects) -> Value {
     let faults = axis_faults(m);
     let joint_links: Vec<Value> =
         joint_link_values(m, &l.bodies).iter().map(|v| joint_link(&l.description, v)).collect();
-    let effects: serde_json::Map<String, Value> =
-        EFFECT_NAMES.iter().zip(effects.as_array()).map(|(n, on)| ((*n).to_owned(), json!(on))).collect();
+    let switched = effects.iter().filter(|e| e.effect.kind == Kind::Switched);
+    let switches: serde_json::Map<String, Value> = switched.map(|e| (e.effect.name.to_owned(), json!(e.on))).collect();
     json!({"name": m.name, "mass": m.mass(), "bodies": m.bodies.len() - 1, "velocities": m.nv, "links": links,
            "joint_links": joint_links, "axes": m.axes.iter().zip(&faults).map(axis).collect::<Vec<_>>(),
            "groups": groups::groups(&l.description, m, &faults), "chains": groups::chains(m), "rigs": groups::rigs(m),
-           "effects": effects})
+           "effects": switches, "all_effects": effects.iter().map(effect).collect::<Vec<_>>()})
+}
+
+/// Of `kind` switched, derived or on_demand; `by`: what calls for it, or would.
+pub fn effect(e: &Listed) -> Value {
+    let (kind, why) = match e.effect.kind {
+        Kind::Switched => ("switched", ""),
+        Kind::Derived(why) => ("derived", why),
+        Kind::OnDemand(who) => ("on_demand", who),
+    };
+    json!({"name": e.effect.name, "what": e.effect.what, "kind": kind, "why": why, "called_for": e.called_for,
+           "by": e.by, "on": e.on})
 }
 
 fn link_json(read: &Link, link: &LinkInfo, body: &LinkBody, values: &LinkValues) -> Value {

@@ -14,6 +14,7 @@ use super::load::{Loaded, load_or_say};
 use super::scene::{Fault, Scene, assemble};
 use crate::engine::EngineKind;
 use crate::model::Model;
+pub(super) use json::effect;
 use std::process::ExitCode;
 pub use values::Unit;
 
@@ -38,7 +39,7 @@ pub fn run(args: &InspectArgs) -> ExitCode {
     }
     let unit = Unit::named(&args.unit);
     let whole = world.as_ref().unwrap_or(&loaded.model);
-    let effects = world.as_ref().map_or(loaded.model.effects, |m| m.effects);
+    let effects = whole.listed_effects();
     let text = if args.urdf_with_inertials {
         loaded.published
     } else if args.json {

@@ -2,10 +2,10 @@
 
 use super::super::load::Loaded;
 use super::Unit;
-use crate::model::{Axis, AxisKind, AxisSlot, EFFECT_CAUSES, EFFECT_NAMES, Effects, JointType, LinkFrame, Model};
+use crate::model::{Axis, AxisKind, AxisSlot, JointType, Kind, LinkFrame, Listed, Model};
 use crate::monitor::{LinkValues, link_values};
 
-pub(super) fn tables(l: &Loaded, unit: Unit, effects: &Effects) -> String {
+pub(super) fn tables(l: &Loaded, unit: Unit, effects: &[Listed]) -> String {
     let m = &l.model;
     let mut text = format!(
         "{}: {} links, {} axes, {} moving bodies, {} velocities, {:.3} kg\n\n",
@@ -35,7 +35,7 @@ pub(super) fn tables(l: &Loaded, unit: Unit, effects: &Effects) -> String {
     for axis in &m.axes {
         text += &axis_row(m, axis);
     }
-    text + &effects_row(effects)
+    text + &effects_table(effects)
 }
 
 fn link_row(frame: &LinkFrame, v: &LinkValues, unit: Unit) -> String {
@@ -82,11 +82,27 @@ fn axis_row(m: &Model, a: &Axis) -> String {
     )
 }
 
-fn effects_row(e: &Effects) -> String {
-    let list = |names: Vec<String>| if names.is_empty() { "none".into() } else { names.join(", ") };
-    let of =
-        |wanted: bool| EFFECT_NAMES.iter().zip(EFFECT_CAUSES).zip(e.as_array()).filter(move |(_, on)| *on == wanted);
-    let called = of(true).map(|((name, _), _)| (*name).to_owned()).collect();
-    let others = of(false).map(|((name, cause), _)| format!("{name} ({cause})")).collect();
-    format!("\neffects that this scene calls for: {}\nnot called for, not built: {}\n", list(called), list(others))
+/// What the scene calls for, with the reasons; what it does not, with what would; what is made on demand.
+fn effects_table(effects: &[Listed]) -> String {
+    let of = |which: &dyn Fn(&Listed) -> bool| effects.iter().filter(|e| which(e)).collect::<Vec<_>>();
+    let rows = |some: Vec<&Listed>, by: &dyn Fn(&Listed) -> String| -> String {
+        some.iter().map(|e| format!("  {:<21} {}\n", e.effect.name, by(e))).collect()
+    };
+    let on_demand = |e: &Listed| matches!(e.effect.kind, Kind::OnDemand(_));
+    let reason = |e: &Listed| match (e.called_for, e.effect.kind) {
+        (false, _) => "switched on; there is nothing for it to do".into(),
+        (true, Kind::Derived(why)) => format!("{}; no switch: {why}", e.by),
+        (true, _) => e.by.clone(),
+    };
+    let needs = |e: &Listed| e.by.trim_start_matches("nothing: ").to_owned();
+    let switched_off = of(&Listed::is_switched_off);
+    let mut text =
+        format!("\neffects that this scene calls for, and what in it does\n{}", rows(of(&|e| e.on), &reason));
+    if !switched_off.is_empty() {
+        text += &format!("switched off\n{}", rows(switched_off, &|e| e.by.clone()));
+    }
+    let absent = of(&|e| !e.on && !e.is_switched_off() && !on_demand(e));
+    text += &format!("not called for, not built; what would call for it\n{}", rows(absent, &needs));
+    let who = |e: &Listed| if let Kind::OnDemand(who) = e.effect.kind { who.to_owned() } else { String::new() };
+    text + &format!("made on demand, outside of the steps; for whom\n{}", rows(of(&on_demand), &who))
 }

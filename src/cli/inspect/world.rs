@@ -1,7 +1,6 @@
 //! What stands in the world beside the robot (W-13): robots, bodies, joints, and what collides.
 
 use crate::model::{Base, Collider, LinkFrame, Model};
-use crate::shape::ContactForm;
 use serde_json::{Value, json};
 
 /// Links that move and weigh something, and those that stand still and weigh something or collide.
@@ -28,7 +27,7 @@ pub(super) fn json(m: &Model) -> Value {
 
 fn collider_json(m: &Model, c: &Collider) -> Value {
     let (p, q, s) = (c.pose.translation, c.pose.rotation.coords, c.surface);
-    json!({"name": c.name, "link": c.link.map(|l| &m.links[l].name), "form": form(&c.form),
+    json!({"name": c.name, "link": c.link.map(|l| &m.links[l].name), "form": c.form.name(),
            "pose": [p.x, p.y, p.z, q.x, q.y, q.z, q.w], "friction": s.friction, "rolling_friction": s.rolling,
            "spinning_friction": s.spinning, "restitution": s.restitution, "margin": c.margin})
 }
@@ -57,7 +56,7 @@ pub(super) fn table(m: &Model) -> String {
         text += &format!(
             "{:<28} {:<14} {:>9} {:>9} {:>9} {:>12} {:>9}\n",
             c.name,
-            form(&c.form),
+            c.form.name(),
             s.friction,
             s.rolling,
             s.spinning,
@@ -70,20 +69,4 @@ pub(super) fn table(m: &Model) -> String {
 
 fn base(base: Base) -> &'static str {
     if base == Base::Free { "free" } else { "fixed" }
-}
-
-pub(super) fn form(form: &ContactForm) -> &'static str {
-    match form {
-        ContactForm::HalfSpace => "half-space",
-        ContactForm::Ball { .. } => "ball",
-        ContactForm::Cuboid { .. } => "cuboid",
-        ContactForm::RoundCuboid { .. } => "round cuboid",
-        ContactForm::Capsule { .. } => "capsule",
-        ContactForm::Ellipsoid { .. } => "ellipsoid",
-        ContactForm::Cylinder { .. } => "cylinder",
-        ContactForm::Cone { .. } => "cone",
-        ContactForm::Frustum { .. } => "frustum",
-        ContactForm::Hull(_) => "hull",
-        ContactForm::Surface(_) => "surface",
-    }
 }

@@ -42,8 +42,10 @@ pub(in crate::cli) struct WorldSettings {
     pub time_scale: Option<f64>,
     /// m/s².
     pub gravity: Option<[f64; 3]>,
-    /// implicit_midpoint, semi_implicit_euler or rk4.
+    /// implicit_midpoint, semi_implicit_euler, rk4 or extrapolation.
     pub integrator: Option<String>,
+    /// 1e-14 … 1e-2, of the integrator extrapolation.
+    pub accuracy: Option<f64>,
     /// rbx, rapier or bullet.
     pub engine: Option<String>,
     /// Effects to switch.

@@ -140,6 +140,7 @@ fn given(w: &WorldSettings) -> Vec<&'static str> {
         ("time_scale", w.time_scale.is_some()),
         ("gravity", w.gravity.is_some()),
         ("integrator", w.integrator.is_some()),
+        ("accuracy", w.accuracy.is_some()),
         ("engine", w.engine.is_some()),
     ];
     all.into_iter().filter(|(_, given)| *given).map(|(name, _)| name).collect()
@@ -234,6 +235,7 @@ fn settings(w: &WorldSettings) -> Result<Settings, String> {
     if let Some(name) = &w.engine {
         s.engine = engine(name)?;
     }
+    s.accuracy = w.accuracy.unwrap_or(s.accuracy);
     s.check()?;
     Ok(s)
 }

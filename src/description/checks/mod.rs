@@ -14,11 +14,12 @@ mod softness;
 mod tree;
 
 use super::Description;
+use super::control;
 use super::element::Element;
 use super::finding::Place;
 use super::report::Report;
 use super::tags::robot::RobotTags;
-use super::{Joint, Link};
+use super::{Joint, JointKind, Link};
 
 /// Runs all checks. `all_joints_read` is false if joints are missing from the description because of faults
 /// already reported.
@@ -34,6 +35,8 @@ pub(super) fn run(d: &Description, robot: &Element, tags: &RobotTags, all_joints
     ranges::check(d, report);
     sides::check(d, report);
     softness::check(d, report);
+    let moves = |name: &str| d.joint(name).is_some_and(|joint| joint.kind != JointKind::Fixed);
+    control::check(&d.controls, moves, report);
 }
 
 fn place_of_link(link: &Link) -> Place {

@@ -4,7 +4,8 @@ use super::bridge::{MotorInput, PairInput};
 use super::{Bullet, plan, turns};
 use crate::dynamics::kinematics_of;
 use crate::engine::maximal::read_state;
-use crate::math::{M3, V3, Vec3};
+use crate::engine::principal::Motion;
+use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Model};
 
 impl Bullet {
@@ -54,13 +55,8 @@ impl Bullet {
     /// From Bullet's bodies to the state.
     pub(super) fn read(&mut self, m: &Model) {
         for (seat, moving) in self.plan.bodies.iter().zip(&self.bodies) {
-            let x_wb = plan::pose(&moving.pose) * seat.frame.inverse();
-            let (w, v) = (Vec3::from(moving.angular), Vec3::from(moving.linear));
-            let origin = v - w.cross(&(x_wb.rotation * seat.frame.translation.vector));
-            let (r, i) = (x_wb.rotation.inverse(), seat.body);
-            self.k.r[i] = M3::from(*x_wb.rotation.to_rotation_matrix().matrix());
-            self.k.p[i] = V3::from(x_wb.translation.vector);
-            (self.k.w[i], self.k.v[i]) = (V3::from(r * w), V3::from(r * origin));
+            let (angular, linear) = (Vec3::from(moving.angular), Vec3::from(moving.linear));
+            seat.write(&Motion { pose: plan::pose(&moving.pose), angular, linear }, &mut self.k);
         }
         for link in self.plan.links.iter().filter(|l| !l.turns.is_empty()) {
             turns::read(m, link, &self.k, &mut self.state);
@@ -79,7 +75,7 @@ impl Bullet {
         }
         for c in &self.contacts {
             self.worst_penetration = self.worst_penetration.max(c.depth);
-            let force = V3::new(c.force[0], c.force[1], c.force[2]);
+            let force = V3::from(c.force);
             for (shape, force) in c.shapes.iter().zip([-force, force]) {
                 let body = self.plan.spec.shapes.get(*shape as usize).map_or(-1, |s| s.body);
                 if let Some(seat) = usize::try_from(body).ok().and_then(|i| self.plan.bodies.get(i)) {

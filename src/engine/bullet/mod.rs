@@ -15,7 +15,7 @@ use super::pairs::is_steep;
 use super::sleep::same;
 use super::{Engine, EngineKind, Integrator, State, StepReport, StepSettings};
 use crate::dynamics::{Kinematics, kinematics};
-use crate::math::{V3, Vec3};
+use crate::math::V3;
 use crate::model::Model;
 use crate::solver::{AxisCommand, Books, ContactPoint};
 use bridge::{Contact, MotorInput, Moving, PairInput, StepInput, World};
@@ -113,15 +113,9 @@ impl Bullet {
         kinematics(m, &mut self.k, &self.state.q, &self.state.v);
         self.bodies.clear();
         for seat in &self.plan.bodies {
-            let i = seat.body;
-            let (w, v) = (Vec3::from(self.k.w[i]), Vec3::from(self.k.v[i]));
-            let x_wb = crate::dynamics::body_pose(&self.k, i);
-            let center = v + w.cross(&seat.frame.translation.vector);
-            self.bodies.push(Moving {
-                pose: plan::array(&(x_wb * seat.frame)),
-                angular: (x_wb.rotation * w).into(),
-                linear: (x_wb.rotation * center).into(),
-            });
+            let at = seat.motion(&self.k);
+            let pose = plan::array(&at.pose);
+            self.bodies.push(Moving { pose, angular: at.angular.into(), linear: at.linear.into() });
         }
         self.fill();
     }
@@ -185,10 +179,8 @@ impl Bullet {
     /// # Errors
     /// Why the world stands still.
     pub fn joint_forces(&mut self) -> Result<Vec<JointForce>, String> {
-        let mut forces = vec![JointForce::default(); self.plan.links.len()];
-        let world = self.world.get().as_ref().map_err(|e| e.clone())?;
-        world.joint_forces(&mut forces).map_err(|e| e.to_string())?;
-        Ok(forces)
+        self.world.get().as_ref().map_err(|e| e.clone())?;
+        Ok(self.forces.clone())
     }
 }
 
@@ -274,14 +266,13 @@ impl Engine for Bullet {
     }
 
     fn contacts(&self, _: &Kinematics, show: &mut dyn FnMut(ContactPoint)) {
-        let v3 = |a: [f64; 3]| V3::new(a[0], a[1], a[2]);
-        for c in self.contacts.iter().filter(|c| v3(c.force).dot(v3(c.normal)) > 0.0) {
+        for c in self.contacts.iter().filter(|c| V3::from(c.force).dot(V3::from(c.normal)) > 0.0) {
             show(ContactPoint {
                 colliders: c.shapes.map(|s| s as usize),
-                point: v3(c.point),
-                normal: v3(c.normal),
+                point: V3::from(c.point),
+                normal: V3::from(c.normal),
                 depth: c.depth,
-                force: v3(c.force),
+                force: V3::from(c.force),
             });
         }
     }

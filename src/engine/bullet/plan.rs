@@ -3,11 +3,13 @@
 
 use super::bridge::{BodySpec, JointSpec, Motor, Moving, PairSpec, Spec};
 use super::shapes;
+use crate::engine::EngineKind;
 use crate::engine::honour::name_of;
 use crate::engine::pairs::Pair;
-use crate::math::{Mat3, Pose, Quat, Vec3};
+use crate::engine::principal::Principal;
+use crate::math::{Mat3, Pose, Quat, V3, Vec3};
 use crate::model::{Axis, AxisSlot, Body, JointType, Model, Softness};
-use nalgebra::{Rotation3, SymmetricEigen, Translation3, UnitQuaternion};
+use nalgebra::{Rotation3, Translation3, UnitQuaternion};
 
 /// Share of the error of a hard joint that a step takes back: Bullet's own default.
 const ERP: f64 = 0.2;
@@ -28,7 +30,7 @@ pub struct Plan {
     /// For the C++ side; where the bodies are is written in before each use.
     pub spec: Spec,
     /// Per body of Bullet.
-    pub bodies: Vec<Seat>,
+    pub bodies: Vec<Principal>,
     /// Per constraint.
     pub links: Vec<Link>,
     /// Per axis; `None`: nothing that Bullet moves.
@@ -39,15 +41,6 @@ pub struct Plan {
     pub carried: Vec<usize>,
 }
 
-/// A body of Bullet.
-#[derive(Clone, Debug)]
-pub struct Seat {
-    /// Index into `Model::bodies`.
-    pub body: usize,
-    /// `X_BC`: Bullet's frame (centre of mass, principal axes) in the body's.
-    pub frame: Pose,
-}
-
 /// A constraint.
 #[derive(Clone, Debug)]
 pub struct Link {
@@ -55,6 +48,8 @@ pub struct Link {
     pub parent: usize,
     /// Index into `Model::bodies`.
     pub child: usize,
+    /// The child's centre of mass in its frame, m.
+    pub center: V3<f64>,
     /// Its frame in the parent's frame, and in the child's.
     pub frames: [Pose; 2],
     /// If it is more than one joint of the model: their bodies from the root outwards, with degree of freedom and sense.
@@ -103,36 +98,17 @@ impl Plan {
     }
 
     fn add_body(&mut self, m: &Model, body: usize) -> Result<(), String> {
-        let b = &m.bodies[body];
-        let center = Vec3::from(b.mc) / b.mass;
-        let square = Mat3::from_diagonal_element(center.norm_squared()) - center * center.transpose();
-        let inertia = Mat3::from(b.inertia) - square * b.mass;
-        let principal = SymmetricEigen::new(inertia);
-        let moments = principal.eigenvalues;
-        if !moments.iter().all(|x| *x > 0.0 && x.is_finite()) {
-            return Err(format!(
-                "{} has the principal moments of inertia {:e}, {:e}, {:e} kg·m²; bullet needs all of them above 0",
-                name_of(m, body),
-                moments[0],
-                moments[1],
-                moments[2]
-            ));
-        }
-        let mut axes = principal.eigenvectors;
-        if axes.determinant() < 0.0 {
-            axes.swap_columns(0, 1);
-        }
-        let moments = (axes.transpose() * inertia * axes).diagonal();
+        let own = Principal::of(m, body, EngineKind::Bullet)?;
         let damping = m.dampings.iter().find(|d| d.body == body && m.effects.body_damping);
         let rest = crate::engine::sleep::limit(m, body);
         self.spec.bodies.push(BodySpec {
-            mass: b.mass,
-            inertia: moments.into(),
+            mass: m.bodies[body].mass,
+            inertia: own.moments.into(),
             moving: Moving::default(),
             damping: damping.map_or([0.0; 2], |d| [d.linear, d.angular]),
             sleep: rest.map_or([0.0, 0.0, -1.0], |r| [r.linear, r.angular, r.after]),
         });
-        self.bodies.push(Seat { body, frame: Pose::from_parts(Translation3::from(center), quat(&axes)) });
+        self.bodies.push(own);
         Ok(())
     }
 
@@ -172,7 +148,7 @@ impl Plan {
         self.add_pair(m, turning.first().copied());
         self.spec.joints.push(joint);
         let turns = if turning.len() > 1 { shape.turns() } else { vec![] };
-        self.links.push(Link { parent, child, frames, turns });
+        self.links.push(Link { parent, child, center: V3::from(below.translation.vector), frames, turns });
         Ok(())
     }
 

@@ -9,19 +9,13 @@ use crate::math::V3;
 /// relative velocities at both ends, which is exact for impacts. Motors are not among them.
 pub(super) fn work(engine: &Bullet, forces: &[JointForce], ends: [&Kinematics; 2], h: f64) -> f64 {
     let power = engine.plan.links.iter().zip(forces).map(|(link, given)| {
-        let (force, torque) = (v3(given.force), v3(given.torque));
-        let center = engine.plan.bodies.iter().find(|seat| seat.body == link.child).map(|seat| seat.frame);
-        let center = center.map_or(V3::default(), |x| V3::from(x.translation.vector));
+        let (force, torque) = (V3::from(given.force), V3::from(given.torque));
         ends.map(|k| {
-            let point = k.r[link.child].mv(center) + k.p[link.child];
+            let point = k.r[link.child].mv(link.center) + k.p[link.child];
             let apart = k.velocity_at(link.child, point) - k.velocity_at(link.parent, point);
             let turn = k.r[link.child].mv(k.w[link.child]) - k.r[link.parent].mv(k.w[link.parent]);
             force.dot(apart) + torque.dot(turn)
         })
     });
     power.map(|[a, b]| 0.5 * h * (a + b)).sum()
-}
-
-fn v3(a: [f64; 3]) -> V3<f64> {
-    V3::new(a[0], a[1], a[2])
 }

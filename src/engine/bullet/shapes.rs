@@ -1,7 +1,8 @@
 //! Colliders as Bullet takes them (tables 6-12 and 6-13 of the source).
 
 use super::bridge::{ShapeKind, ShapeSpec};
-use super::plan::{Seat, array, number};
+use super::plan::{array, number};
+use crate::engine::principal::Principal;
 use crate::math::Pose;
 use crate::model::{Collider, Model, Surface};
 use crate::shape::ContactForm;
@@ -10,11 +11,11 @@ use crate::shape::ContactForm;
 ///
 /// # Errors
 /// Names the collider that Bullet cannot take.
-pub(super) fn specs(m: &Model, bodies: &[Seat], index: &[Option<usize>]) -> Result<Vec<ShapeSpec>, String> {
+pub(super) fn specs(m: &Model, bodies: &[Principal], index: &[Option<usize>]) -> Result<Vec<ShapeSpec>, String> {
     m.colliders.iter().map(|c| spec(m, c, bodies, index)).collect()
 }
 
-fn spec(m: &Model, c: &Collider, bodies: &[Seat], index: &[Option<usize>]) -> Result<ShapeSpec, String> {
+fn spec(m: &Model, c: &Collider, bodies: &[Principal], index: &[Option<usize>]) -> Result<ShapeSpec, String> {
     let (body, x_bl) = m.seat_of(c);
     let seat = match index[body] {
         Some(i) => bodies[i].frame,

@@ -8,6 +8,7 @@ use super::flight::Flight;
 use super::plan::Plan;
 use super::share::Shares;
 use super::spec::Touch;
+use crate::engine::rolling::{Turning, roll};
 use crate::math::{V3, Vec3};
 use crate::model::Model;
 use crate::solver::ContactPoint;
@@ -128,13 +129,13 @@ impl Contacts {
             let (from, to) = (&part.from[i], &part.to[i]);
             let weight = part.gravity * (seat.mass * h);
             if part.asleep[i] {
-                self.receive(seat.body, -weight / whole);
+                self.receive(seat.own.body, -weight / whole);
             }
             if !touched || part.asleep[i] {
                 continue;
             }
             let got = (to.v - from.v) * seat.mass - weight;
-            self.receive(seat.body, got / whole);
+            self.receive(seat.own.body, got / whole);
             self.shares.ask(i, got - normal);
             self.taken -= 0.5 * got.dot(&(from.v + to.v)) + to.turning(seat) - from.turning(seat);
         }
@@ -148,25 +149,13 @@ impl Contacts {
         }
     }
 
-    /// Lets rolling and spinning friction turn the bodies: bounded by coefficient × normal force, and by what brings the turning
-    /// to rest. True if there is any.
+    /// Lets rolling and spinning friction turn the bodies. True if there is any.
     pub fn roll(&mut self, m: &Model, plan: &Plan, part: &mut Part) -> bool {
         let mut rolls = false;
         for p in &self.points {
-            let [a, b] = p.colliders;
-            let surface = m.colliders[a].surface.with(&m.colliders[b].surface);
-            if surface.rolling <= 0.0 && surface.spinning <= 0.0 {
-                continue;
-            }
-            let bodies = p.colliders.map(|c| plan.carrier(m, c as u32).filter(|i| !part.asleep[*i]));
-            let (normal, pressed) = (Vec3::from(p.normal), part.h.0 * p.force.dot(p.normal));
-            let spin = |body: Option<usize>| body.map_or(Vec3::zeros(), |i| part.to[i].w);
-            let turn = spin(bodies[1]) - spin(bodies[0]);
-            let about = normal * turn.dot(&normal);
-            for (turn, bound) in [(turn - about, surface.rolling), (about, surface.spinning)] {
-                self.taken += brake(plan, part.to, bodies, turn, bound * pressed);
-            }
-            rolls = true;
+            let taken = roll(m, p, part.h.0, &mut Awake { plan, part });
+            self.taken += taken.unwrap_or(0.0);
+            rolls |= taken.is_some();
         }
         rolls
     }
@@ -177,22 +166,30 @@ fn moved(from: &Flight, to: &Flight, point: Vec3) -> Vec3 {
     (to.pose * (from.pose.inverse() * nalgebra::Point3::from(point))).coords
 }
 
-/// Takes from the turn of the second body against the first, by at most an impulse of `bound` N·m·s; returns the energy taken, J.
-fn brake(plan: &Plan, to: &mut [Flight], bodies: [Option<usize>; 2], turn: Vec3, bound: f64) -> f64 {
-    let rate = turn.norm();
-    if rate <= 0.0 || bound <= 0.0 {
-        return 0.0;
+/// What friction can turn.
+struct Awake<'a, 'b> {
+    plan: &'a Plan,
+    part: &'a mut Part<'b>,
+}
+
+impl Awake<'_, '_> {
+    fn index(&self, body: usize) -> Option<usize> {
+        self.plan.index[body].filter(|i| !self.part.asleep[*i])
     }
-    let about = turn / rate;
-    let mobility: f64 = bodies.iter().flatten().map(|i| to[*i].mobility(&plan.seats[*i], &about)).sum();
-    if mobility <= 0.0 {
-        return 0.0;
+}
+
+impl Turning for Awake<'_, '_> {
+    fn spin(&self, body: usize) -> V3<f64> {
+        self.index(body).map_or(V3::default(), |i| V3::from(self.part.to[i].w))
     }
-    let impulse = (rate / mobility).min(bound);
-    for (body, sign) in [(bodies[0], 1.0), (bodies[1], -1.0)] {
-        if let Some(i) = body {
-            to[i].spin(&plan.seats[i], &(about * (sign * impulse)));
+
+    fn mobility(&self, body: usize, about: V3<f64>) -> f64 {
+        self.index(body).map_or(0.0, |i| self.part.to[i].mobility(&self.plan.seats[i], &about.into()))
+    }
+
+    fn turn(&mut self, body: usize, impulse: V3<f64>) {
+        if let Some(i) = self.index(body) {
+            self.part.to[i].spin(&self.plan.seats[i], &impulse.into());
         }
     }
-    impulse * (rate - 0.5 * impulse * mobility)
 }

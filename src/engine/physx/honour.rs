@@ -7,8 +7,7 @@ use crate::model::Model;
 
 /// Links, told once for each of their axes, and then shapes, in the order of the model.
 pub fn shortfalls(m: &Model) -> Vec<Shortfall> {
-    let tell = |element, item: &str, instead: &str| Shortfall { element, item: item.into(), instead: instead.into() };
-    let joint = |element| tell(element, "<joint>", LEFT_OUT);
+    let joint = |element| Shortfall::new(element, "<joint>", LEFT_OUT);
     let mut links: Vec<Shortfall> = m.axes.iter().map(|a| joint(format!("joint '{}'", a.name))).collect();
     if links.is_empty() {
         links.extend((1..m.bodies.len()).filter(|i| !is_free(m, *i)).map(|i| joint(name_of(m, i))));
@@ -17,8 +16,8 @@ pub fn shortfalls(m: &Model) -> Vec<Shortfall> {
     let shapes = m.colliders.iter().filter(|c| m.effects.contact && moves(m.seat_of(c).0)).filter_map(|c| {
         let element = format!("link '{}'", c.name);
         match make(&c.form) {
-            None => Some(tell(element, "the shape", "it does not collide")),
-            Some(made) => made.instead.map(|instead| tell(element, "the shape", instead)),
+            None => Some(Shortfall::new(element, "the shape", "it does not collide")),
+            Some(made) => made.instead.map(|instead| Shortfall::new(element, "the shape", instead)),
         }
     });
     links.extend(shapes);

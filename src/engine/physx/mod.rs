@@ -164,8 +164,8 @@ impl Physx {
 
     fn read(&mut self, m: &Model) {
         for (seat, at) in self.plan.seats.iter().zip(&self.to) {
-            at.write(seat, &mut self.k);
-            read_body(m, &self.k, seat.body, &mut self.state);
+            seat.own.write(&at.motion(), &mut self.k);
+            read_body(m, &self.k, seat.own.body, &mut self.state);
         }
     }
 
@@ -181,9 +181,9 @@ fn damp(plan: &Plan, part: &mut Part, on: bool) -> bool {
     let mut damped = false;
     for (seat, at) in plan.seats.iter().zip(part.to.iter_mut()).filter(|_| on) {
         if let Some(d) = seat.damping {
-            let kept = |loss: f64| libm::pow(1.0 - loss, part.h.0);
-            at.v *= kept(d.linear);
-            at.w *= kept(d.angular);
+            let [linear, angular] = d.kept(part.h.0);
+            at.v *= linear;
+            at.w *= angular;
             damped = true;
         }
     }

@@ -4,11 +4,11 @@
 use super::flight::Flight;
 use super::shapes::{make, surface};
 use super::spec::{Body, Form, Moving, NO_LINK, Scene, Shape};
-use crate::engine::honour::name_of;
-use crate::math::{Mat3, Pose, Vec3};
+use crate::engine::EngineKind;
+use crate::engine::principal::Principal;
+use crate::math::Pose;
 use crate::model::{BodyDamping, Collider, Deactivation, JointType, Model};
 use crate::shape::ContactForm;
-use nalgebra::{Rotation3, SymmetricEigen, Translation3, UnitQuaternion};
 
 /// Shapes nearer than twice this are looked at, m: what closes with less than 40 m/s is seen before it touches in a step of 1 ms.
 const REACH: f32 = 0.02;
@@ -29,14 +29,10 @@ pub struct Plan {
 /// A body of PhysX.
 #[derive(Clone, Debug)]
 pub struct Seat {
-    /// Index into `Model::bodies`.
-    pub body: usize,
-    /// `X_BC`: PhysX's frame (centre of mass, principal axes) in the body's.
-    pub frame: Pose,
+    /// As PhysX has it.
+    pub own: Principal,
     /// kg.
     pub mass: f64,
-    /// Principal moments, kg·m².
-    pub moments: Vec3,
     /// When it may sleep.
     pub rest: Option<Deactivation>,
     /// What it loses by itself.
@@ -46,7 +42,7 @@ pub struct Seat {
 impl Seat {
     /// About how far from its centre of mass its mass lies, m.
     fn size(&self) -> f64 {
-        (self.moments.sum() / (2.0 * self.mass)).sqrt()
+        (self.own.moments.sum() / (2.0 * self.mass)).sqrt()
     }
 }
 
@@ -63,7 +59,7 @@ impl Plan {
         let seats =
             (1..m.bodies.len()).filter(|i| is_free(m, *i)).map(|i| seat(m, i)).collect::<Result<Vec<_>, _>>()?;
         let mut index = vec![None; m.bodies.len()];
-        seats.iter().enumerate().for_each(|(k, seat)| index[seat.body] = Some(k));
+        seats.iter().enumerate().for_each(|(k, seat)| index[seat.own.body] = Some(k));
         let smallest = seats.iter().map(Seat::size).fold(f64::INFINITY, f64::min);
         let scene = Scene {
             bodies: seats.iter().map(of_seat).collect(),
@@ -84,7 +80,7 @@ impl Plan {
     fn add(&mut self, m: &Model, collider: usize, c: &Collider) -> Result<(), String> {
         let (body, x_bl) = m.seat_of(c);
         let (index, frame) = match self.index[body] {
-            Some(i) => (Some(i), self.seats[i].frame),
+            Some(i) => (Some(i), self.seats[i].own.frame),
             None if body == 0 => (None, Pose::identity()),
             // A link: nothing touches it.
             None => return Ok(()),
@@ -117,47 +113,21 @@ impl Plan {
     /// Where the bodies are if the model's are there.
     pub fn place(&self, k: &crate::dynamics::Kinematics, bodies: &mut [Moving]) {
         for (seat, moving) in self.seats.iter().zip(bodies) {
-            let (x_wb, i) = (crate::dynamics::body_pose(k, seat.body), seat.body);
-            let (w, v) = (Vec3::from(k.w[i]), Vec3::from(k.v[i]));
-            let center = v + w.cross(&seat.frame.translation.vector);
-            *moving = Moving {
-                pose: array(&(x_wb * seat.frame)),
-                angular: Flight::single(x_wb.rotation * w),
-                linear: Flight::single(x_wb.rotation * center),
-            };
+            let at = seat.own.motion(k);
+            let [angular, linear] = [at.angular, at.linear].map(Flight::single);
+            *moving = Moving { pose: array(&at.pose), angular, linear };
         }
     }
 }
 
 fn of_seat(seat: &Seat) -> Body {
-    Body { mass: seat.mass as f32, inertia: Flight::single(seat.moments), moving: Moving::default() }
+    Body { mass: seat.mass as f32, inertia: Flight::single(seat.own.moments), moving: Moving::default() }
 }
 
 fn seat(m: &Model, body: usize) -> Result<Seat, String> {
-    let b = &m.bodies[body];
-    let center = Vec3::from(b.mc) / b.mass;
-    let square = Mat3::from_diagonal_element(center.norm_squared()) - center * center.transpose();
-    let inertia = Mat3::from(b.inertia) - square * b.mass;
-    let mut axes = SymmetricEigen::new(inertia).eigenvectors;
-    if axes.determinant() < 0.0 {
-        axes.swap_columns(0, 1);
-    }
-    let moments = (axes.transpose() * inertia * axes).diagonal();
-    if !moments.iter().all(|x| *x > 0.0 && x.is_finite()) {
-        return Err(format!(
-            "{} has the principal moments of inertia {:e}, {:e}, {:e} kg·m²; physx needs all of them above 0",
-            name_of(m, body),
-            moments[0],
-            moments[1],
-            moments[2]
-        ));
-    }
-    let turned = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
     Ok(Seat {
-        body,
-        frame: Pose::from_parts(Translation3::from(center), turned),
-        mass: b.mass,
-        moments,
+        own: Principal::of(m, body, EngineKind::Physx)?,
+        mass: m.bodies[body].mass,
         rest: crate::engine::sleep::limit(m, body),
         damping: m.dampings.iter().find(|d| d.body == body).copied(),
     })

@@ -4,6 +4,7 @@
 use super::flight::Flight;
 use super::plan::Plan;
 use super::sys::Sim;
+use crate::engine::forest::Islands;
 use crate::model::Model;
 use crate::solver::ContactPoint;
 
@@ -14,8 +15,8 @@ pub struct Rest {
     sleepy: bool,
     /// s.
     slow: Vec<f64>,
-    /// Per body: another one of those that touch each other.
-    of: Vec<usize>,
+    /// Of those that touch each other.
+    islands: Islands,
     ready: Vec<bool>,
     /// Per body.
     pub asleep: Vec<bool>,
@@ -26,7 +27,7 @@ impl Rest {
     pub fn new(plan: &Plan) -> Self {
         let n = plan.seats.len();
         let sleepy = plan.seats.iter().any(|s| s.rest.is_some());
-        Self { sleepy, slow: vec![0.0; n], of: (0..n).collect(), ready: vec![false; n], asleep: vec![false; n] }
+        Self { sleepy, slow: vec![0.0; n], islands: Islands::new(n), ready: vec![false; n], asleep: vec![false; n] }
     }
 
     /// All awake, for as long as it takes anew.
@@ -63,32 +64,23 @@ impl Rest {
             let slow = seat.rest.filter(|r| at.v.norm() <= r.linear && at.w.norm() <= r.angular);
             self.slow[i] = if slow.is_some() { self.slow[i] + h } else { 0.0 };
             self.ready[i] = self.asleep[i] || slow.is_some_and(|r| self.slow[i] > r.after);
-            self.of[i] = i;
         }
+        self.islands.part();
         for p in touching {
             if let [Some(a), Some(b)] = p.colliders.map(|c| plan.carrier(m, c as u32)) {
-                let (a, b) = (self.first(a), self.first(b));
-                self.of[a.max(b)] = a.min(b);
+                self.islands.join(a, b);
             }
         }
         for i in 0..self.ready.len() {
-            let first = self.first(i);
+            let first = self.islands.of(i);
             self.ready[first] &= self.ready[i];
         }
         for i in 0..self.ready.len() {
-            let first = self.first(i);
+            let first = self.islands.of(i);
             if self.ready[first] && !self.asleep[i] {
                 self.asleep[i] = true;
                 sim.let_sleep(i, true);
             }
         }
-    }
-
-    /// The first of those that touch each other.
-    fn first(&self, mut i: usize) -> usize {
-        while self.of[i] != i {
-            i = self.of[i];
-        }
-        i
     }
 }

@@ -5,6 +5,7 @@ use super::parts::Parts;
 use super::shapes::shape;
 use super::sim::Sim;
 use crate::dynamics::Kinematics;
+use crate::engine::rolling::{Turning, roll};
 use crate::math::V3;
 use crate::model::Model;
 use crate::solver::ContactPoint;
@@ -152,50 +153,36 @@ impl Contacts {
         -done.sum::<f64>()
     }
 
-    /// Lets rolling and spinning friction turn the bodies: bounded by coefficient × normal force, and by what brings the turning
-    /// to rest.
+    /// Lets rolling and spinning friction turn the bodies.
     pub fn roll(&mut self, m: &Model, sim: &mut Sim, parts: &Parts, (k, h): (&Kinematics, f64)) {
-        for i in 0..self.points.len() {
-            let p = self.points[i];
-            let [a, b] = p.colliders;
-            let surface = m.colliders[a].surface.with(&m.colliders[b].surface);
-            if surface.rolling <= 0.0 && surface.spinning <= 0.0 {
-                continue;
-            }
-            let bodies = p.colliders.map(|c| m.seat_of(&m.colliders[c]).0);
-            let pressed = h * p.force.dot(p.normal);
-            let turn = spin(sim, parts, bodies[1]) - spin(sim, parts, bodies[0]);
-            let about = p.normal * turn.dot(p.normal);
-            for (turn, bound) in [(turn - about, surface.rolling), (about, surface.spinning)] {
-                self.rolled += brake(sim, (parts, k), bodies, turn, bound * pressed);
-            }
+        for p in &self.points {
+            self.rolled += roll(m, p, h, &mut Bodies { sim, parts, k }).unwrap_or(0.0);
         }
     }
 }
 
-/// Angular velocity in the world, rad/s.
-fn spin(sim: &Sim, parts: &Parts, body: usize) -> V3<f64> {
-    parts.handles[body].and_then(|h| sim.bodies.get(h)).map_or(V3::default(), |b| ours(b.angvel()))
+/// What friction can turn.
+struct Bodies<'a> {
+    sim: &'a mut Sim,
+    parts: &'a Parts,
+    k: &'a Kinematics,
 }
 
-/// Takes from the turn of the second body against the first, by at most an impulse of `bound` N·m·s; returns the energy taken, J.
-fn brake(sim: &mut Sim, (parts, k): (&Parts, &Kinematics), bodies: [usize; 2], turn: V3<f64>, bound: f64) -> f64 {
-    let rate = turn.dot(turn).sqrt();
-    if rate <= 0.0 || bound <= 0.0 {
-        return 0.0;
+impl Turning for Bodies<'_> {
+    fn spin(&self, body: usize) -> V3<f64> {
+        self.parts.handles[body].and_then(|h| self.sim.bodies.get(h)).map_or(V3::default(), |b| ours(b.angvel()))
     }
-    let about = turn * (1.0 / rate);
-    let mobility = parts.turning(k, bodies[0], about) + parts.turning(k, bodies[1], about);
-    if mobility <= 0.0 {
-        return 0.0;
+
+    fn mobility(&self, body: usize, about: V3<f64>) -> f64 {
+        self.parts.turning(self.k, body, about)
     }
-    let impulse = (rate / mobility).min(bound);
-    for (body, sign) in [(bodies[0], 1.0), (bodies[1], -1.0)] {
-        if let Some(b) = parts.handles[body].and_then(|h| sim.bodies.get_mut(h)).filter(|b| b.is_dynamic()) {
-            b.apply_torque_impulse(vector(about * (sign * impulse)), false);
+
+    fn turn(&mut self, body: usize, impulse: V3<f64>) {
+        let handle = self.parts.handles[body];
+        if let Some(b) = handle.and_then(|h| self.sim.bodies.get_mut(h)).filter(|b| b.is_dynamic()) {
+            b.apply_torque_impulse(vector(impulse), false);
         }
     }
-    impulse * (rate - 0.5 * impulse * mobility)
 }
 
 fn sides(m: &Model, sim: &Sim, pair: &ContactPair) -> Option<Sides> {

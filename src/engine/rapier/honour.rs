@@ -13,15 +13,20 @@ pub fn shape_name(form: &ContactForm) -> String {
 
 /// In the order of the model.
 pub fn shortfalls(m: &Model) -> Vec<Shortfall> {
-    let tell = |element, item: &str, instead: &str| Shortfall { element, item: item.into(), instead: instead.into() };
     let light = embodied(m).map(|body| {
-        tell(name_of(m, body), "a body without mass or inertia", "it gets a little, so that rapier can move it")
+        Shortfall::new(
+            name_of(m, body),
+            "a body without mass or inertia",
+            "it gets a little, so that rapier can move it",
+        )
     });
     let shapes = m.colliders.iter().filter(|_| m.effects.contact).filter_map(|c| {
         let element = format!("link '{}'", c.name);
         match shape(&c.form) {
-            None => Some(tell(element, "the shape", "it does not collide")),
-            Some(_) if is_approximate(&c.form) => Some(tell(element, "the round shape", "it collides as a polyhedron")),
+            None => Some(Shortfall::new(element, "the shape", "it does not collide")),
+            Some(_) if is_approximate(&c.form) => {
+                Some(Shortfall::new(element, "the round shape", "it collides as a polyhedron"))
+            }
             Some(_) => None,
         }
     });

@@ -110,7 +110,7 @@ impl Rapier {
         self.loads.fill(Load::default());
         self.rows.set(m, &mut self.sim, &self.laws, (&self.k, &self.state, part.h), &mut self.loads);
         self.load();
-        let gravity = V3::new(s.gravity[0], s.gravity[1], s.gravity[2]);
+        let gravity = V3::from(s.gravity);
         let sound = self.sim.step((part.h, part.substeps as usize), gravity, &Filter(m));
         let substep = part.h / f64::from(part.substeps);
         self.contacts.read(m, &self.sim, (part.h, part.whole, substep));
@@ -151,8 +151,8 @@ impl Rapier {
     fn damp(&mut self, m: &Model, h: f64) {
         for d in &m.dampings {
             let Some(body) = self.parts.handles[d.body].and_then(|h| self.sim.bodies.get_mut(h)) else { continue };
-            let kept = |loss: f64| libm::pow(1.0 - loss, h);
-            let (v, w) = (body.linvel() * kept(d.linear), body.angvel() * kept(d.angular));
+            let [linear, angular] = d.kept(h);
+            let (v, w) = (body.linvel() * linear, body.angvel() * angular);
             body.set_linvel(v, false);
             body.set_angvel(w, false);
         }

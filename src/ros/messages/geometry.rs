@@ -2,7 +2,7 @@
 
 use super::Header;
 use crate::math::Pose;
-pub use crate::record::messages::{Quaternion, Twist, Vector3};
+pub use crate::record::messages::{Pose as PoseMessage, Quaternion, Twist, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// geometry_msgs/TwistStamped: of the origin of a link, along the axes of `header.frame_id`.
@@ -12,6 +12,15 @@ pub struct TwistStamped {
     pub header: Header,
     /// The twist.
     pub twist: Twist,
+}
+
+/// geometry_msgs/Accel.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct Accel {
+    /// m/s².
+    pub linear: Vector3,
+    /// rad/s².
+    pub angular: Vector3,
 }
 
 /// geometry_msgs/Wrench.

@@ -4,7 +4,7 @@ mod services;
 mod table;
 mod values;
 
-pub use services::{Change, ParameterServers, declare};
+pub use services::{Change, ParameterServers, Setter, declare};
 pub use table::{Definition, Range, When, default_yaml, help, table};
 pub use values::Values;
 

@@ -3,12 +3,12 @@
 
 use super::table::{Definition, Range, When};
 use super::values::Values;
-use futures::StreamExt;
+use crate::ros::service::Service;
+use crate::ros::topics::stream_qos;
 use futures::future::LocalBoxFuture;
 use ros2_client::parameters::raw;
-use ros2_client::qos::{History, QosProfile, WhenFull};
 use ros2_client::rcl_interfaces as msg;
-use ros2_client::{Message, Name, Node, NodeOptions, ParameterValue, Server, ServiceMapping, ServiceTypeName};
+use ros2_client::{Message, Name, Node, NodeOptions, ParameterValue};
 use std::cell::RefCell;
 
 /// What is done about a change.
@@ -18,16 +18,29 @@ pub struct Change<'a> {
     pub check: &'a dyn Fn(&Values) -> Result<(), String>,
     /// Called with the new values once they count.
     pub applied: &'a dyn Fn(&Values),
+    /// Called with each parameter that ros2-client announces on `/parameter_events`.
+    pub announced: &'a dyn Fn(raw::Parameter),
+}
+
+/// Sets parameters, for clients and for services of ours alike: checked, announced and put into force in one way.
+#[derive(Clone, Copy)]
+pub struct Setter<'a> {
+    /// For `/parameter_events`.
+    pub node: &'a Node,
+    /// In force.
+    pub values: &'a RefCell<Values>,
+    /// What is done about a change.
+    pub change: Change<'a>,
 }
 
 /// The servers.
 pub struct ParameterServers {
-    get: Server<msg::GetParametersRequest, msg::GetParametersResponse>,
-    types: Server<msg::GetParameterTypesRequest, msg::GetParameterTypesResponse>,
-    list: Server<msg::ListParametersRequest, msg::ListParametersResponse>,
-    describe: Server<msg::DescribeParametersRequest, msg::DescribeParametersResponse>,
-    set: Server<msg::SetParametersRequest, msg::SetParametersResponse>,
-    set_atomically: Server<msg::SetParametersRequest, msg::SetParametersAtomicallyResponse>,
+    get: Service<msg::GetParametersRequest, msg::GetParametersResponse>,
+    types: Service<msg::GetParameterTypesRequest, msg::GetParameterTypesResponse>,
+    list: Service<msg::ListParametersRequest, msg::ListParametersResponse>,
+    describe: Service<msg::DescribeParametersRequest, msg::DescribeParametersResponse>,
+    set: Service<msg::SetParametersRequest, msg::SetParametersResponse>,
+    set_atomically: Service<msg::SetParametersRequest, msg::SetParametersAtomicallyResponse>,
 }
 
 /// Declares `values` in ros2-client's store and turns its own services off.
@@ -51,53 +64,33 @@ impl ParameterServers {
     }
 
     /// Answers requests until it is dropped.
-    pub async fn serve(&self, node: &Node, values: &RefCell<Values>, change: Change<'_>) {
+    pub async fn serve(&self, setter: Setter<'_>) {
+        let values = setter.values;
         let futures: Vec<LocalBoxFuture<()>> = vec![
-            Box::pin(answer(&self.get, |r| get(&values.borrow(), &r.names))),
-            Box::pin(answer(&self.types, |r| types(&values.borrow(), &r.names))),
-            Box::pin(answer(&self.list, |r| list(&values.borrow(), &r))),
-            Box::pin(answer(&self.describe, |r| describe(&values.borrow(), &r.names))),
-            Box::pin(answer(&self.set, |r| {
-                let results = r.parameter.into_iter().map(|p| set(node, values, change, vec![p])).collect();
+            Box::pin(self.get.serve(async |r| get(&values.borrow(), &r.names))),
+            Box::pin(self.types.serve(async |r| types(&values.borrow(), &r.names))),
+            Box::pin(self.list.serve(async |r| list(&values.borrow(), &r))),
+            Box::pin(self.describe.serve(async |r| describe(&values.borrow(), &r.names))),
+            Box::pin(self.set.serve(async |r| {
+                let results = r.parameter.into_iter().map(|p| setter.result(vec![p])).collect();
                 msg::SetParametersResponse { results }
             })),
-            Box::pin(answer(&self.set_atomically, |r| msg::SetParametersAtomicallyResponse {
-                result: set(node, values, change, r.parameter),
-            })),
+            Box::pin(
+                self.set_atomically
+                    .serve(async |r| msg::SetParametersAtomicallyResponse { result: setter.result(r.parameter) }),
+            ),
         ];
         futures::future::join_all(futures).await;
     }
 }
 
-fn server<Q, R>(node: &mut Node, name: &str, kind: &str) -> Result<Server<Q, R>, String>
+fn server<Q, R>(node: &mut Node, name: &str, kind: &str) -> Result<Service<Q, R>, String>
 where
     Q: Message + Clone + 'static,
     R: Message + 'static,
 {
-    let qos =
-        QosProfile::publisher_default().reliability_reliable(WhenFull::Fail).history(History::KeepLast { depth: 1000 });
     let path = Name::new(&node.fully_qualified_name(), name).map_err(|e| e.to_string())?;
-    let kind = ServiceTypeName::new("rcl_interfaces", kind);
-    node.create_server(ServiceMapping::Enhanced, &path, &kind, qos.clone(), qos)
-        .map_err(|e| format!("cannot create service {path}: {e}"))
-}
-
-async fn answer<Q, R>(server: &Server<Q, R>, reply: impl Fn(Q) -> R)
-where
-    Q: Message + 'static,
-    R: Message + 'static,
-{
-    let mut requests = server.receive_request_stream();
-    while let Some(request) = requests.next().await {
-        match request {
-            Ok((id, request)) => {
-                if let Err(e) = server.async_send_response(id, reply(request)).await {
-                    tracing::warn!("a parameter service cannot answer: {e}");
-                }
-            }
-            Err(e) => tracing::warn!("a parameter service cannot read its request: {e}"),
-        }
-    }
+    Service::new(node, &path, &format!("rcl_interfaces/{kind}"), &stream_qos())
 }
 
 fn get(values: &Values, names: &[String]) -> msg::GetParametersResponse {
@@ -112,11 +105,20 @@ fn types(values: &Values, names: &[String]) -> msg::GetParameterTypesResponse {
     msg::GetParameterTypesResponse { values: names.iter().map(kind).collect() }
 }
 
-/// No name has a `.`, so a prefix can only be a whole name, and every depth reaches it.
+/// As rclcpp: a prefix is a whole name, or what stands before a `.`; the depth counts the parts of a name behind its prefix, 0 is any.
 fn list(values: &Values, request: &msg::ListParametersRequest) -> msg::ListParametersResponse {
-    let asked = |name: &str| request.prefixes.is_empty() || request.prefixes.iter().any(|p| p == name);
-    let names = values.iter().map(|(d, _)| d.name).filter(|n| asked(n)).map(str::to_string).collect();
-    msg::ListParametersResponse { result: msg::ListParametersResult { names, prefixes: vec![] } }
+    let near = |rest: &str| request.depth == 0 || rest.split('.').count() as u64 <= request.depth;
+    let below = |name: &str, prefix: &str| {
+        name == prefix || name.strip_prefix(prefix).and_then(|rest| rest.strip_prefix('.')).is_some_and(near)
+    };
+    let asked = |name: &str| match request.prefixes.as_slice() {
+        [] => near(name),
+        prefixes => prefixes.iter().any(|prefix| below(name, prefix)),
+    };
+    let names: Vec<String> = values.iter().map(|(d, _)| d.name).filter(|n| asked(n)).map(str::to_string).collect();
+    let mut prefixes: Vec<String> = names.iter().filter_map(|n| Some(n.rsplit_once('.')?.0.to_string())).collect();
+    prefixes.dedup();
+    msg::ListParametersResponse { result: msg::ListParametersResult { names, prefixes } }
 }
 
 fn describe(values: &Values, names: &[String]) -> msg::DescribeParametersResponse {
@@ -165,28 +167,34 @@ fn blank() -> raw::ParameterDescriptor {
     }
 }
 
-/// Sets all or none.
-fn set(
-    node: &Node,
-    values: &RefCell<Values>,
-    change: Change,
-    parameters: Vec<raw::Parameter>,
-) -> raw::SetParametersResult {
-    let mut changed = values.borrow().clone();
-    for p in &parameters {
-        if let Err(reason) = changed.set_running(&p.name, p.value.clone().into()) {
-            return raw::SetParametersResult { successful: false, reason };
+impl Setter<'_> {
+    /// Sets one parameter.
+    ///
+    /// # Errors
+    /// Why it is refused; nothing has changed then.
+    pub fn set(&self, name: &str, value: ParameterValue) -> Result<(), String> {
+        self.set_all(vec![raw::Parameter { name: name.into(), value: value.into() }])
+    }
+
+    fn result(&self, parameters: Vec<raw::Parameter>) -> raw::SetParametersResult {
+        let refused = self.set_all(parameters).err();
+        raw::SetParametersResult { successful: refused.is_none(), reason: refused.unwrap_or_default() }
+    }
+
+    /// Sets all or none.
+    fn set_all(&self, parameters: Vec<raw::Parameter>) -> Result<(), String> {
+        let mut changed = self.values.borrow().clone();
+        for p in &parameters {
+            changed.set_running(&p.name, p.value.clone().into())?;
         }
-    }
-    if let Err(reason) = (change.check)(&changed) {
-        return raw::SetParametersResult { successful: false, reason };
-    }
-    for p in parameters {
-        if let Err(reason) = node.set_parameter(&p.name, p.value.into()) {
-            return raw::SetParametersResult { successful: false, reason };
+        (self.change.check)(&changed)?;
+        for p in parameters {
+            let announced = p.clone();
+            self.node.set_parameter(&p.name, p.value.into())?;
+            (self.change.announced)(announced);
         }
+        *self.values.borrow_mut() = changed;
+        (self.change.applied)(&self.values.borrow());
+        Ok(())
     }
-    *values.borrow_mut() = changed;
-    (change.applied)(&values.borrow());
-    raw::SetParametersResult { successful: true, reason: String::new() }
 }

@@ -1,7 +1,10 @@
 //! The table of parameters.
 
 use super::show;
-use crate::world::Settings;
+use crate::model::EFFECT_NAMES;
+use crate::ros::markers::KIND_NAMES;
+use crate::ros::watchdog::OnTimeout;
+use crate::world::{ACCURACY, Settings};
 use ros2_client::ParameterValue as V;
 
 /// When a parameter may be set.
@@ -28,6 +31,10 @@ pub enum Range {
     OneOf(&'static [&'static str]),
     /// This many finite numbers.
     Numbers(usize),
+    /// This many numbers, each in this range.
+    NumbersIn(usize, f64, f64),
+    /// Any of these strings.
+    SomeOf(&'static [&'static str]),
 }
 
 /// One parameter.
@@ -52,6 +59,10 @@ pub fn table() -> Vec<Definition> {
     let mut all = world_parameters();
     all.extend(start_parameters());
     all.extend(loop_parameters());
+    all.extend(reset_parameters());
+    all.extend(command_parameters());
+    all.extend(marker_parameters());
+    all.extend(effect_parameters());
     all
 }
 
@@ -83,6 +94,12 @@ fn world_parameters() -> Vec<Definition> {
             Always,
         )
         .doc("How the state is advanced."),
+        define("accuracy", V::Double(s.accuracy), Range::Double(ACCURACY.0, ACCURACY.1), "", Always).doc(
+            "Of the integrator extrapolation: error that it may make per second, relative to 1 rad, m, rad/s, m/s and the coordinate.",
+        ),
+        define("estimate_error", V::Boolean(false), Range::Any, "", Always).doc(
+            "Makes every control interval again with half the step, and tells in /diagnostics what it was off by; costs some three times the step time.",
+        ),
     ]
 }
 
@@ -105,6 +122,8 @@ fn start_parameters() -> Vec<Definition> {
             .doc("Time stands still; /clock, /tf and the topics of the state are repeated all the same."),
         define("allow_mode_switch", V::Boolean(true), Range::Any, "", Always)
             .doc("May a command switch an axis between idle, torque and servo mode? The switchable attribute of its <drive> tag must allow it, too."),
+        define("ros2_control", V::String("auto".into()), Range::OneOf(&["auto", "always", "never"]), "", Start)
+            .doc("Topics for ros2_control's joint_state_topic_hardware_interface. auto: if the URDF has a <ros2_control> block with a plug-in that speaks over topics; always: even without one, then for all axes; never: not at all."),
     ]
 }
 
@@ -121,9 +140,94 @@ fn loop_parameters() -> Vec<Definition> {
         ),
         define("realtime_priority", V::Integer(0), Range::Integer(0, 99), "", Start)
             .doc("SCHED_FIFO priority of the control thread; 0: ordinary scheduling."),
+        define("allow_shared_topics", V::Boolean(false), Range::Any, "", Always).doc(
+            "May somebody else publish our topics? Else the node does not start where joint_states is published already, and warns if that happens later.",
+        ),
         define("use_sim_time", V::Boolean(false), Range::Any, "", Always)
             .doc("Accepted because launch files set it; this node is the source of /clock, so it has no effect."),
     ]
+}
+
+fn reset_parameters() -> Vec<Definition> {
+    use When::Always;
+    vec![
+        define("reset_joints", V::Boolean(true), Range::Any, "", Always).doc(
+            "Does a reset of the state put the joints back to their positions at start? Else they stay where they are, at rest.",
+        ),
+        define("reset_at_start", V::Boolean(false), Range::Any, "", Always)
+            .doc("Is the state reset whenever the simulation goes from paused or stopped to playing? Time goes on."),
+    ]
+}
+
+fn command_parameters() -> Vec<Definition> {
+    use When::Always;
+    vec![
+        define("lockstep", V::Boolean(false), Range::Any, "", Always).doc(
+            "The world makes one control interval for each joint_command that carries the stamp of the latest state, and for step_simulation; else it stands.",
+        ),
+        define("lockstep_timeout", V::Double(0.0), Range::Double(0.0, 3600.0), "s", Always).doc(
+            "Real time without such a command after which lock-step makes one interval with the commands in force; 0: it waits for ever.",
+        ),
+        define("command_timeout", V::Double(0.0), Range::Double(0.0, 3600.0), "s", Always)
+            .doc("Simulated time since the last accepted command after which on_timeout comes into force; 0: never."),
+        define("on_timeout", V::String(OnTimeout::NAMES[0].into()), Range::OneOf(&OnTimeout::NAMES), "", Always).doc(
+            "hold: every axis servos where it is; idle: drives give no torque; brake: motors are short-circuited. Only axes that may switch their mode do; the next command ends it.",
+        ),
+    ]
+}
+
+fn marker_parameters() -> Vec<Definition> {
+    use When::Always;
+    let kinds = KIND_NAMES.iter().filter(|name| **name != "normals").map(|name| (*name).to_owned()).collect();
+    vec![
+        define("markers_rate", V::Double(10.0), Range::Double(0.0, 1000.0), "Hz", Always)
+            .doc("Rate of debug/markers in real time, while somebody subscribes; 0: none."),
+        define("markers", V::StringArray(kinds), Range::SomeOf(&KIND_NAMES), "", Always)
+            .doc("What debug/markers shows; the names are the namespaces of the markers."),
+        define("markers_size", V::Double(0.005), Range::Double(0.0, 1.0), "m", Always)
+            .doc("Radius of the centres of mass in debug/markers; 0: the least half edge of the box around the collision shapes of the link. Principal axes are 40 times as long, those of what a joint moves 20 times."),
+        define("markers_color", V::DoubleArray(vec![1.0, 0.0, 1.0, 1.0]), Range::NumbersIn(4, 0.0, 1.0), "", Always)
+            .doc("Red, green, blue and opacity of the centres of mass in debug/markers."),
+    ]
+}
+
+/// `effects.NAME` for every effect, in the order of `model::EFFECT_NAMES`.
+pub(super) const EFFECTS: [&str; EFFECT_NAMES.len()] = [
+    "effects.gravity",
+    "effects.damping",
+    "effects.friction",
+    "effects.joint_friction",
+    "effects.static_resistance",
+    "effects.dynamic_resistance",
+    "effects.limits",
+    "effects.soft_stops",
+    "effects.drives",
+    "effects.torque_speed_line",
+    "effects.short_brake",
+    "effects.servo",
+    "effects.rotor_inertia",
+    "effects.compliance",
+    "effects.mimic",
+    "effects.breaking",
+    "effects.body_damping",
+    "effects.contact",
+    "effects.contact_friction",
+    "effects.rolling_resistance",
+    "effects.spinning_friction",
+    "effects.restitution",
+    "effects.continuous_detection",
+    "effects.deactivation",
+];
+
+/// Values of an effect.
+pub(super) const SWITCH: [&str; 3] = ["auto", "on", "off"];
+
+fn effect_parameters() -> Vec<Definition> {
+    let doc = "auto: as the scene says, else on where the scene or the robot calls for it. on, off: whatever they say.";
+    let effect = |name: &&'static str| {
+        define(name, V::String(SWITCH[0].into()), Range::OneOf(&SWITCH), "", When::Start).doc(doc)
+    };
+    EFFECTS.iter().map(effect).collect()
 }
 
 fn define(name: &'static str, default: V, range: Range, unit: &'static str, when: When) -> Definition {
@@ -144,6 +248,8 @@ impl Definition {
             Range::Double(low, high) => format!("{low:?} … {high:?}"),
             Range::OneOf(names) => names.join(" | "),
             Range::Numbers(n) => format!("{n} finite numbers"),
+            Range::NumbersIn(n, low, high) => format!("{n} numbers {low:?} … {high:?}"),
+            Range::SomeOf(names) => format!("any of {}", names.join(", ")),
         };
         if self.unit.is_empty() { text } else { format!("{text} {}", self.unit).trim_start().into() }
     }
@@ -173,6 +279,10 @@ impl Definition {
             (Range::Double(low, high), V::Double(d)) => (low..=high).contains(d),
             (Range::OneOf(names), V::String(s)) => names.contains(&s.as_str()),
             (Range::Numbers(n), V::DoubleArray(a)) => a.len() == n && a.iter().all(|x| x.is_finite()),
+            (Range::NumbersIn(n, low, high), V::DoubleArray(a)) => {
+                a.len() == n && a.iter().all(|x| (low..=high).contains(x))
+            }
+            (Range::SomeOf(names), V::StringArray(a)) => a.iter().all(|name| names.contains(&name.as_str())),
             _ => true,
         };
         if accepted {
@@ -190,7 +300,7 @@ pub fn help() -> String {
             .into_iter()
             .filter(|s| !s.is_empty())
             .collect();
-        text += &format!("  {:<19} {}\n  {:<19} [{}]\n", d.name, d.doc, "", facts.join("; "));
+        text += &format!("  {:<21} {}\n  {:<21} [{}]\n", d.name, d.doc, "", facts.join("; "));
     }
     text
 }
@@ -203,13 +313,25 @@ pub fn default_yaml() -> String {
          # or set one on the command line: --ros-args -p time_scale:=0.5\n\
          /**:\n  ros__parameters:\n",
     );
+    let mut said = "";
     for d in table().iter().filter(|d| d.when != When::Never) {
         let facts = [d.range_text(), d.when_text().into()];
         let facts: Vec<_> = facts.into_iter().filter(|s: &String| !s.is_empty()).collect();
         let facts = if facts.is_empty() { String::new() } else { format!(" [{}]", facts.join("; ")) };
-        text += &format!("    # {}{facts}\n    {}: {}\n", d.doc, d.name, show(&d.default));
+        if d.doc != said {
+            text += &format!("    # {}{facts}\n", d.doc);
+        }
+        text += &format!("    {}: {}\n", d.name, yaml(&d.default));
+        said = d.doc;
     }
     text
+}
+
+/// A number with an exponent is a number to YAML 1.1 only if it has a point.
+fn yaml(value: &V) -> String {
+    let text = show(value);
+    let bare = matches!(value, V::Double(_)) && !text.contains('.');
+    if bare { text.replace('e', ".0e") } else { text }
 }
 
 #[cfg(test)]
@@ -220,6 +342,12 @@ mod tests {
         let file = std::fs::read_to_string(path).unwrap();
         let mend = "write what ros::parameters::default_yaml gives into config/default.yaml";
         assert!(file == super::default_yaml(), "{mend}:\n{}", super::default_yaml());
+    }
+
+    #[test]
+    fn every_effect_has_its_parameter() {
+        let names = super::EFFECT_NAMES.map(|name| format!("effects.{name}"));
+        assert_eq!(super::EFFECTS.map(str::to_string), names);
     }
 
     #[test]

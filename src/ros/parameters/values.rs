@@ -1,13 +1,16 @@
 //! Checked values of all parameters, and what they mean.
 
-use super::table::{Definition, When, table};
-use crate::model::Base;
+use super::table::{Definition, EFFECTS, Range, SWITCH, When, table};
+use crate::model::{Base, EFFECT_NAMES};
 use crate::ros::exchange::Pace;
+use crate::ros::markers::MarkerSettings;
+use crate::ros::watchdog::OnTimeout;
 use crate::world::{EngineKind, Integrator, Settings};
 use ros2_client::ParameterValue as V;
 
 /// Names of the integrators; the first one is the default.
-pub(super) const INTEGRATORS: [&str; 3] = [Integrator::NAMES[0].0, Integrator::NAMES[1].0, Integrator::NAMES[2].0];
+pub(super) const INTEGRATORS: [&str; Integrator::NAMES.len()] =
+    [Integrator::NAMES[0].0, Integrator::NAMES[1].0, Integrator::NAMES[2].0, Integrator::NAMES[3].0];
 
 /// Names of the engines, built in or not; the first one is the default.
 pub(super) const ENGINES: [&str; EngineKind::NAMES.len()] =
@@ -49,7 +52,7 @@ impl Values {
         if definition.when == When::Never {
             return Err(format!("parameter '{name}' is read-only"));
         }
-        let value = widen(value, &definition.default);
+        let value = widen(value, definition);
         definition.check(&value)?;
         self.replace(index, value)?;
         self.given[index] = true;
@@ -68,6 +71,7 @@ impl Values {
                 "gravity" => V::DoubleArray(settings.gravity.to_vec()),
                 "integrator" => V::String(settings.integrator.name().into()),
                 "engine" => V::String(settings.engine.name().into()),
+                "accuracy" => V::Double(settings.accuracy),
                 _ => continue,
             };
             if !self.given[index] {
@@ -94,7 +98,17 @@ impl Values {
 
     /// Parameter `ground`.
     pub fn ground(&self) -> bool {
-        *self.value("ground") == V::Boolean(true)
+        self.flag("ground")
+    }
+
+    /// Effects that parameters `effects.NAME` switch: the parameter, the effect, and whether it is on.
+    pub fn effects(&self) -> impl Iterator<Item = (&'static str, &'static str, bool)> {
+        let switched = |name: &'static str| match self.text(name) {
+            "on" => Some(true),
+            "off" => Some(false),
+            _ => None,
+        };
+        EFFECTS.into_iter().zip(EFFECT_NAMES).filter_map(move |(name, effect)| Some((name, effect, switched(name)?)))
     }
 
     /// Sets a parameter of a running node. `Err` says what is wrong with it; nothing has changed then.
@@ -140,12 +154,21 @@ impl Values {
             gravity,
             integrator: Integrator::by_name(self.text("integrator")).unwrap_or_default(),
             engine: EngineKind::by_name(self.text("engine")).unwrap_or_default(),
+            accuracy: self.double("accuracy"),
         };
         Pace {
             settings,
-            paused: *self.value("paused") == V::Boolean(true),
+            paused: self.flag("paused"),
             real_time_factor: self.double("real_time_factor"),
             max_catch_up: self.integer("max_catch_up") as u32,
+            reset_joints: self.flag("reset_joints"),
+            reset_at_start: self.flag("reset_at_start"),
+            estimate_error: self.flag("estimate_error"),
+            lockstep: self.flag("lockstep"),
+            lockstep_timeout_ns: (self.double("lockstep_timeout") * 1e9).round() as u64,
+            command_timeout_ns: (self.double("command_timeout") * 1e9).round() as i64,
+            on_timeout: OnTimeout::by_name(self.text("on_timeout")),
+            allow_mode_switch: self.allow_mode_switch(),
         }
     }
 
@@ -161,12 +184,32 @@ impl Values {
 
     /// Parameter `allow_mode_switch`.
     pub fn allow_mode_switch(&self) -> bool {
-        *self.value("allow_mode_switch") == V::Boolean(true)
+        self.flag("allow_mode_switch")
+    }
+
+    /// Parameter `allow_shared_topics`.
+    pub fn allow_shared_topics(&self) -> bool {
+        self.flag("allow_shared_topics")
     }
 
     /// Parameter `tf_rate`, Hz.
     pub fn tf_rate(&self) -> f64 {
         self.double("tf_rate")
+    }
+
+    /// Parameter `ros2_control`: auto, always or never.
+    pub fn ros2_control(&self) -> &str {
+        self.text("ros2_control")
+    }
+
+    /// Parameters `markers…`.
+    pub fn markers(&self) -> MarkerSettings {
+        let kinds = if let V::StringArray(kinds) = self.value("markers") { kinds.as_slice() } else { &[] };
+        let color = match self.value("markers_color") {
+            V::DoubleArray(c) if c.len() == 4 => [c[0], c[1], c[2], c[3]],
+            _ => [1.0; 4],
+        };
+        MarkerSettings::new(self.double("markers_rate"), kinds, self.double("markers_size"), color)
     }
 
     /// Parameter `realtime_priority`.
@@ -185,6 +228,10 @@ impl Values {
         self.get(name).map_or(&V::NotSet, |(_, value)| value)
     }
 
+    fn flag(&self, name: &str) -> bool {
+        *self.value(name) == V::Boolean(true)
+    }
+
     // The check has made sure of the types, so the fallbacks below are never used.
     fn double(&self, name: &str) -> f64 {
         if let V::Double(d) = self.value(name) { *d } else { f64::NAN }
@@ -199,9 +246,12 @@ impl Values {
     }
 }
 
-/// On the command line and in YAML, `1` may stand for `1.0`.
-fn widen(value: V, like: &V) -> V {
-    match (value, like) {
+/// On the command line and in YAML, `1` may stand for `1.0`; and `on` and `off`, unquoted, may be read as truth values.
+fn widen(value: V, definition: &Definition) -> V {
+    match (value, &definition.default) {
+        (V::Boolean(on), V::String(_)) if definition.range == Range::OneOf(&SWITCH) => {
+            V::String(if on { "on" } else { "off" }.into())
+        }
         (V::Integer(i), V::Double(_)) => V::Double(i as f64),
         (V::IntegerArray(a), V::DoubleArray(_)) => V::DoubleArray(a.into_iter().map(|i| i as f64).collect()),
         (value, _) => value,

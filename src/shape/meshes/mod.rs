@@ -49,6 +49,14 @@ impl Meshes {
         Self { places: Places { folder, packages: packages.to_vec(), paths }, ..Self::default() }
     }
 
+    /// The files that have been read, or looked for in vain.
+    pub fn files(&self) -> Vec<PathBuf> {
+        fn names<T>(cache: &Cache<T>) -> Vec<PathBuf> {
+            cache.lock().unwrap_or_else(PoisonError::into_inner).keys().cloned().collect()
+        }
+        [names(&self.meshes), names(&self.heights)].concat()
+    }
+
     /// The mesh in a file (STL, OBJ or DAE), its corners welded where they are at the very same place, in metres, as the
     /// file has it (not scaled, not repaired). `filename` is a path relative to the URDF or absolute, or `file:///…`, or
     /// `package://NAME/…`.

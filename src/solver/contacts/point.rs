@@ -73,9 +73,18 @@ impl Point {
         self.floor = if self.gap.abs() < CLOSED { touching } else { touching.min(closing) };
     }
 
+    /// Coulomb's cone; without friction its normal row alone.
     pub(super) fn add_cone(&mut self, t: &mut Target, middle: &Kinematics) {
         let wrench = |p: &Self, n: usize| (p.axes[n], V3::default());
-        self.block = self.add(t, Kind::Cone { friction: self.surface.friction }, (middle, &[0, 1, 2]), wrench);
+        self.block = match self.rubs() {
+            true => self.add(t, Kind::Cone { friction: self.surface.friction }, (middle, &[0, 1, 2]), wrench),
+            false => self.add(t, Kind::Bounds { lower: 0.0, upper: f64::INFINITY }, (middle, &[0]), wrench),
+        };
+    }
+
+    /// Has it rows along its tangents?
+    fn rubs(&self) -> bool {
+        self.surface.friction > 0.0
     }
 
     /// Rows of rolling and of spinning friction, where the pair has them.
@@ -127,9 +136,12 @@ impl Point {
     /// Velocities without impulses, minus the wanted ones.
     pub(super) fn aim(&mut self, rows: &mut Rows, middle: &Kinematics, end: &Kinematics) {
         let free = approach(end, &self.touch, self.placed.point);
-        let curve = approach(middle, &self.touch, self.placed.point) - self.start.0;
         self.free = self.along(0, free);
         rows.row(self.block, 0).bias = self.free - self.floor;
+        if !self.rubs() {
+            return;
+        }
+        let curve = approach(middle, &self.touch, self.placed.point) - self.start.0;
         for n in [1, 2] {
             rows.row(self.block, n).bias = self.along(n, free + curve);
         }
@@ -185,9 +197,11 @@ impl Point {
         if rows.is_off(self.block) {
             return;
         }
-        let cone = [x.normal, self.along(1, x.tangent), self.along(2, x.tangent)];
-        for (n, x) in cone.into_iter().enumerate() {
-            rows.row(self.block, n).impulse = x;
+        rows.row(self.block, 0).impulse = x.normal;
+        if self.rubs() {
+            for n in [1, 2] {
+                rows.row(self.block, n).impulse = self.along(n, x.tangent);
+            }
         }
         if let Some(block) = self.rolling {
             rows.row(block, 0).impulse = self.along(1, x.rolling);
@@ -201,9 +215,10 @@ impl Point {
     pub(super) fn read(&self, rows: &Rows) -> Impulse {
         let x = |block: Option<usize>, n: usize| block.map_or(0.0, |b| rows.impulse(b, n));
         let cone = Some(self.block);
+        let tangents = cone.filter(|_| self.rubs());
         Impulse {
             normal: x(cone, 0),
-            tangent: self.axes[1] * x(cone, 1) + self.axes[2] * x(cone, 2),
+            tangent: self.axes[1] * x(tangents, 1) + self.axes[2] * x(tangents, 2),
             rolling: self.axes[1] * x(self.rolling, 0) + self.axes[2] * x(self.rolling, 1),
             spinning: x(self.spinning, 0),
         }

@@ -31,7 +31,7 @@ impl Contacts {
             solved = self.settle_for(rows);
         }
         self.take(rows);
-        if self.bounce(rows, pass.h) {
+        if self.bounces && self.bounce(rows, pass.h) {
             solved = rows.solve_within((sweeps, TRIES), AIM);
             self.temper(rows);
             self.take(rows);
@@ -71,7 +71,9 @@ impl Contacts {
             };
             point.add_cone(&mut target, &self.middle);
             point.aim(target.rows, &self.middle, &self.end);
-            point.add_discs(&mut target, &self.middle, &self.end);
+            if self.resists_turning {
+                point.add_discs(&mut target, &self.middle, &self.end);
+            }
             point.write(rows, &point.impulse);
         }
     }
