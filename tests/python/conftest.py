@@ -21,6 +21,7 @@ import pytest
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import Log
+from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
@@ -74,7 +75,7 @@ def nanoseconds(stamp):
     return stamp.sec * 10**9 + stamp.nanosec
 
 
-def wait_until(condition, timeout=5.0, what="the condition"):
+def wait_until(condition, timeout=15.0, what="the condition"):
     """Polls until `condition()` is truthy, and returns it."""
     deadline = time.monotonic() + timeout
     while time.monotonic() < deadline:
@@ -96,6 +97,24 @@ def until_heard(publish, heard, what):
     raise AssertionError(f"waited in vain for {what}")
 
 
+class FirstHeard:
+    """A publisher whose first message is waited for until its subscribers acknowledge it: they find a publisher up to a heartbeat
+    (3 s) later than it finds them, and until then what others publish overtakes it."""
+
+    def __init__(self, publisher):
+        self.publisher, self.heard = publisher, False
+
+    def __getattr__(self, name):
+        return getattr(self.publisher, name)
+
+    def publish(self, message):
+        self.publisher.publish(message)
+        if not self.heard:
+            # Polled, so that the thread that listens goes on meanwhile.
+            wait_until(lambda: self.publisher.wait_for_all_acked(Duration(seconds=0)), what="the first acknowledgement")
+            self.heard = True
+
+
 class Simulator:
     """The running binary."""
 
@@ -113,7 +132,7 @@ class Simulator:
         """Ends the node and insists on a clean exit."""
         if self.process.poll() is None:
             self.process.send_signal(by)
-        self.output, self.errors = self.process.communicate(timeout=5)
+        self.output, self.errors = self.process.communicate(timeout=15)
         assert self.process.returncode == 0, f"exit code {self.process.returncode}: {self.errors}"
         return self.output
 
@@ -147,9 +166,9 @@ class Probe:
         """A publisher that the simulator already listens to."""
         publisher = self.node.create_publisher(kind, topic, 100)
         wait_until(lambda: publisher.get_subscription_count() > 0, what=f"a subscriber of {topic}")
-        return publisher
+        return FirstHeard(publisher)
 
-    def call(self, start, timeout=5.0):
+    def call(self, start, timeout=10.0):
         """The result of a service call; `start` is tried twice, because one of a hundred first calls gets lost."""
         for attempt in range(2):
             future = start()
@@ -162,7 +181,7 @@ class Probe:
 
     def parameters(self, node="forward_dynamics"):
         client = AsyncParameterClient(self.node, node)
-        assert client.wait_for_services(5.0)
+        assert client.wait_for_services(15.0)
         return client
 
     def set(self, client, **values):

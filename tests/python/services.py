@@ -29,10 +29,10 @@ class Services:
         service = self.namespace + (service or re.sub(r"(?<!^)(?=[A-Z])", "_", kind.__name__).lower())
         if service not in self.clients:
             client = self.clients[service] = self.bench.probe.node.create_client(kind, service)
-            assert client.wait_for_service(5.0), service
+            assert client.wait_for_service(15.0), service
             if kind in REFUSED:
                 self.bench.probe.call(lambda: client.call_async(kind.Request(**REFUSED[kind])), timeout=10)
         return lambda: self.clients[service].call_async(kind.Request(**fields))
 
-    def __call__(self, kind, service=None, timeout=5.0, **fields):
+    def __call__(self, kind, service=None, timeout=10.0, **fields):
         return self.bench.probe.call(self.start(kind, service, **fields), timeout=timeout)

@@ -20,7 +20,7 @@ ground: true
 
 def call(bench, kind, name, **fields):
     client = bench.probe.node.create_client(kind, name)
-    assert client.wait_for_service(5.0), name
+    assert client.wait_for_service(15.0), name
     return bench.probe.call(lambda: client.call_async(kind.Request(**fields)))
 
 

@@ -151,7 +151,7 @@ def test_the_client_of_the_readme_moves_the_elbow(start, tmp_path):
         wait_until(lambda: abs(bench.axis("left_elbow")[0] + 1.0) < 0.01, timeout=15, what="the elbow to reach -1 rad")
     finally:
         client.terminate()
-        said = client.communicate(timeout=5)[0]
+        said = client.communicate(timeout=15)[0]
     assert re.search(r"left_elbow [+-]\d\.\d{3} rad", said), said
 
 
@@ -162,7 +162,7 @@ def test_listen_and_push_pushes_the_first_axis(start):
         wait_until(lambda: bench.axis("waist_yaw")[0] > 0.05, timeout=15, what="the waist to turn")
     finally:
         client.terminate()
-        said = client.communicate(timeout=5)[0]
+        said = client.communicate(timeout=15)[0]
     assert "waist_yaw" in said, said
 
 

@@ -314,7 +314,7 @@ def test_a_folder_with_something_in_it_is_refused(tmp_path):
 
 def record(bench, start, folder=""):
     client = bench.probe.node.create_client(Record, "record")
-    assert client.wait_for_service(5.0)
+    assert client.wait_for_service(15.0)
     return bench.probe.call(lambda: client.call_async(Record.Request(start=start, folder=str(folder))), timeout=20)
 
 

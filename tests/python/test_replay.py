@@ -58,7 +58,7 @@ def busy(bench):
     target = JointState(name=[last().name[0]], position=[0.2], velocity=[1.0])
     until_heard(lambda: joint.publish(target), lambda: abs(last().position[0] - 0.2) < 0.01, "the target")
     remember = bench.probe.node.create_client(Trigger, "remember_pose")
-    assert remember.wait_for_service(5.0)
+    assert remember.wait_for_service(15.0)
     assert bench.probe.call(lambda: remember.call_async(Trigger.Request())).success
     targets = Float64MultiArray(data=[0.02 * (i % 3) for i in range(n)])
     until_heard(lambda: servo.publish(targets), lambda: abs(last().position[0]) < 0.01, "the targets")

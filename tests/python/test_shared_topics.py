@@ -118,5 +118,5 @@ def test_a_node_starts_again_after_its_predecessor_has_ended(probe, simulators, 
         simulator = runs(probe, simulators)
         simulators.remove(simulator)
         simulator.process.send_signal(end)
-        simulator.process.communicate(timeout=5)
+        simulator.process.communicate(timeout=15)
     runs(probe, simulators)

@@ -318,7 +318,7 @@ def test_quitting_answers_and_ends_the_node(start):
     bench = start()
     services = Services(bench)
     assert go(services, QUITTING).result == OK
-    assert bench.simulator.process.wait(timeout=5) == 0
+    assert bench.simulator.process.wait(timeout=15) == 0
 
 
 def test_entities_are_robots_bodies_and_links(scene):
