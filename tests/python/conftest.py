@@ -21,7 +21,6 @@ import pytest
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import Log
-from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
@@ -35,6 +34,12 @@ ARM = HERE / "arm.urdf"
 STREAM = QoSProfile(depth=20000, reliability=ReliabilityPolicy.RELIABLE)
 LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 ROSOUT = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "alone: keeps real time, or loses nothing: not beside other tests on two cores")
 
 
 DOMAINS = range(102)
@@ -97,24 +102,6 @@ def until_heard(publish, heard, what):
     raise AssertionError(f"waited in vain for {what}")
 
 
-class FirstHeard:
-    """A publisher whose first message is waited for until its subscribers acknowledge it: they find a publisher up to a heartbeat
-    (3 s) later than it finds them, and until then what others publish overtakes it."""
-
-    def __init__(self, publisher):
-        self.publisher, self.heard = publisher, False
-
-    def __getattr__(self, name):
-        return getattr(self.publisher, name)
-
-    def publish(self, message):
-        self.publisher.publish(message)
-        if not self.heard:
-            # Polled, so that the thread that listens goes on meanwhile.
-            wait_until(lambda: self.publisher.wait_for_all_acked(Duration(seconds=0)), what="the first acknowledgement")
-            self.heard = True
-
-
 class Simulator:
     """The running binary."""
 
@@ -166,7 +153,7 @@ class Probe:
         """A publisher that the simulator already listens to."""
         publisher = self.node.create_publisher(kind, topic, 100)
         wait_until(lambda: publisher.get_subscription_count() > 0, what=f"a subscriber of {topic}")
-        return FirstHeard(publisher)
+        return publisher
 
     def call(self, start, timeout=10.0):
         """The result of a service call; `start` is tried twice, because one of a hundred first calls gets lost."""

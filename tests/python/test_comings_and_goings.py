@@ -8,9 +8,12 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
 from conftest import LATCHED, Probe, Simulator, nanoseconds, wait_until
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
+
+pytestmark = pytest.mark.alone
 
 INTERVAL = 1_000_000
 """ns."""

@@ -4,7 +4,10 @@ import re
 import signal
 import time
 
+import pytest
 from conftest import nanoseconds, wait_until
+
+pytestmark = pytest.mark.alone
 
 INTERVAL = 1_000_000
 
