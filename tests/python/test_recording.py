@@ -2,6 +2,7 @@
 
 import json
 import signal
+import struct
 import subprocess
 import sys
 from importlib import import_module
@@ -42,9 +43,9 @@ def raw_messages(file):
                     yield channel.topic, schemas[channel.schema_id].name, record.log_time, record.data
         except EndOfFile:
             return
-        except CRCValidationError:
-            # A chunk that is cut off is read short, and its sum compared.
-            assert not stream.read(1), "a broken chunk, and not the last one"
+        except (CRCValidationError, struct.error):
+            # What is cut off is read short: a chunk's sum differs then, and of an index's number bytes are missing.
+            assert not stream.read(1), "broken, and not at the end"
 
 
 def message_class(name):
