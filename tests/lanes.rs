@@ -4,8 +4,8 @@
 mod support;
 
 use realnoid::dynamics::{AbaBatch, CHUNK, DofIn, LaneKind, Limbs, Push, Response};
-use realnoid::dynamics::{Workspace, aba, aba_fused, aba_hybrid, aba_limbs};
-use realnoid::math::V3;
+use realnoid::dynamics::{Kinematics, Workspace, aba, aba_fused, aba_hybrid, aba_limbs, kinematics};
+use realnoid::math::{M3, V3};
 use realnoid::model::{JointType, Model};
 use support::{ALL, Random, state, tree};
 
@@ -23,7 +23,54 @@ fn models() -> Vec<Model> {
     let mut joints = [JointType::Revolute; 30];
     joints[0] = JointType::Floating;
     all.push(tree(&joints, false, 11));
+    let others: Vec<Model> = all.iter().zip(20..).map(|(m, seed)| aligned(m, seed)).collect();
+    all.extend(others);
     all
+}
+
+/// The same with two of three joints along axes of their parents' frames, either way, turned by any angle about them.
+fn aligned(m: &Model, seed: u64) -> Model {
+    let (mut rng, mut m) = (Random(seed), m.clone());
+    for b in &mut m.bodies[1..] {
+        let (s, c) = (rng.unit() * 6.0).sin_cos();
+        let (x, y, z) = (V3::new(c, -s, 0.0), V3::new(s, c, 0.0), V3::new(0.0, 0.0, 1.0));
+        let r = match rng.next() % 9 {
+            0 => [z, x, y],
+            1 => [y, z, x],
+            2 => [x, y, z],
+            3 => [-z, y, x],
+            4 => [x, -z, y],
+            5 => [y, x, -z],
+            _ => continue,
+        };
+        b.put((M3 { r }, b.tree_p));
+        assert!(b.along.is_some() && b.tree_r == M3 { r });
+    }
+    m
+}
+
+fn posed(m: &Model, (q, v, _): &Robot) -> (Vec<M3<f64>>, [Vec<V3<f64>>; 3]) {
+    let mut k = Kinematics::new(m);
+    kinematics(m, &mut k, q, v);
+    (k.r, [k.p, k.w, k.v])
+}
+
+#[test]
+fn zeros_that_are_left_out_change_no_bit() {
+    let mut seen = [0; 3];
+    for (n, m) in models().iter().chain(&branched()).enumerate() {
+        let m = aligned(m, n as u64);
+        let mut whole = m.clone();
+        whole.bodies.iter_mut().for_each(|b| b.along = None);
+        m.bodies.iter().filter_map(|b| b.along).for_each(|along| seen[along as usize] += 1);
+        for robot in robots(&m, 4, &mut Random(n as u64)) {
+            assert!(posed(&m, &robot) == posed(&whole, &robot), "model {n}");
+            for kind in [LaneKind::Four, LaneKind::FourFused].into_iter().filter(|kind| kind.is_available()) {
+                assert_eq!(bits(&alone(&m, &robot, kind)), bits(&alone(&whole, &robot, kind)), "model {n}, {kind:?}");
+            }
+        }
+    }
+    assert!(seen.iter().all(|n| *n > 20), "{seen:?}");
 }
 
 type Robot = (Vec<f64>, Vec<f64>, Vec<f64>);
@@ -135,6 +182,8 @@ fn branched() -> Vec<Model> {
         m.bodies[2..].iter_mut().zip(parents).for_each(|(b, parent)| b.parent = parent);
         all.push(m);
     }
+    let others: Vec<Model> = all.iter().zip(50..).map(|(m, seed)| aligned(m, seed)).collect();
+    all.extend(others);
     all
 }
 

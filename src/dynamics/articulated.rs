@@ -76,21 +76,35 @@ impl<T: Real> Art<T> {
     /// About an origin that lies at −p: with P = [p×], H' = H + P M, J' = J − H P + P H'ᵀ.
     #[inline(always)]
     pub fn moved(self, p: V3<T>) -> Self {
+        self.moved_flat::<3>(p)
+    }
+
+    /// The same of one whose row `Z` of H, and row and column `Z` of J, are zero; of any one for `Z` = 3.
+    #[inline(always)]
+    pub fn moved_flat<const Z: usize>(self, p: V3<T>) -> Self {
         let Self { mut j, h, m } = self;
         let (m0, m1, m2) = (p.cross(m.row0()), p.cross(m.row1()), p.cross(m.row2()));
         let g = M3::rows(
-            V3::new(h.r[0].x + m0.x, h.r[0].y + m1.x, h.r[0].z + m2.x),
-            V3::new(h.r[1].x + m0.y, h.r[1].y + m1.y, h.r[1].z + m2.y),
-            V3::new(h.r[2].x + m0.z, h.r[2].y + m1.z, h.r[2].z + m2.z),
+            if Z == 0 { V3::new(m0.x, m1.x, m2.x) } else { h.r[0] + V3::new(m0.x, m1.x, m2.x) },
+            if Z == 1 { V3::new(m0.y, m1.y, m2.y) } else { h.r[1] + V3::new(m0.y, m1.y, m2.y) },
+            if Z == 2 { V3::new(m0.z, m1.z, m2.z) } else { h.r[2] + V3::new(m0.z, m1.z, m2.z) },
         );
-        let (a0, a1, a2) = (p.cross(h.r[0]), p.cross(h.r[1]), p.cross(h.r[2]));
         let (b0, b1, b2) = (p.cross(g.r[0]), p.cross(g.r[1]), p.cross(g.r[2]));
-        j.xx += a0.x + b0.x;
-        j.xy += a0.y + b1.x;
-        j.xz += a0.z + b2.x;
-        j.yy += a1.y + b1.y;
-        j.yz += a1.z + b2.y;
-        j.zz += a2.z + b2.z;
+        let (a0, a1, a2) = (p.cross(h.r[0]), p.cross(h.r[1]), p.cross(h.r[2]));
+        if Z == 0 {
+            (j.xx, j.xy, j.xz) = (b0.x, b1.x, b2.x);
+        } else {
+            j.xx += a0.x + b0.x;
+            j.xy = if Z == 1 { a0.y + b1.x } else { j.xy + (a0.y + b1.x) };
+            j.xz = if Z == 2 { a0.z + b2.x } else { j.xz + (a0.z + b2.x) };
+        }
+        if Z == 1 {
+            (j.yy, j.yz) = (b1.y, b2.y);
+        } else {
+            j.yy += a1.y + b1.y;
+            j.yz = if Z == 2 { a1.z + b2.y } else { j.yz + (a1.z + b2.y) };
+        }
+        j.zz = if Z == 2 { b2.z } else { j.zz + (a2.z + b2.z) };
         Self { j, h: g, m }
     }
 

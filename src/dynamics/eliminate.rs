@@ -1,9 +1,10 @@
 //! Elimination of single degrees of freedom from an articulated inertia.
 
 use super::DofIn;
-use super::aba::{Dof, Kin};
+use super::aba::Dof;
 use super::articulated::{Acc, Art};
-use crate::math::{M3, Real, S3, V3};
+use super::turn::Turn;
+use crate::math::{Real, V3};
 
 /// Eliminates a rotation about `s`, a direction in the child frame.
 #[inline(always)]
@@ -43,42 +44,24 @@ pub(crate) fn revolute_root<T: Real>(k: &Acc<T>, (d, tau): (&mut Dof<T>, T)) {
 /// Eliminates a free rotation about z without added inertia, and moves to the parent, in whose frame the origin is at `p`. The row and column of J that belong
 /// to z vanish, and so does H's row: they are left out.
 #[inline(always)]
-pub(crate) fn revolute<T: Real>(k: &Acc<T>, p: V3<T>, kin: &Kin<T>, s: T, (d, tau): (&mut Dof<T>, T)) -> Acc<T> {
+pub(crate) fn revolute<T: Real>(
+    k: &Acc<T>,
+    (r, p): (&impl Turn<T>, V3<T>),
+    (w, v): (V3<T>, V3<T>),
+    s: T,
+    (d, tau): (&mut Dof<T>, T),
+) -> Acc<T> {
     revolute_root(k, (d, tau));
     let Dof { ua, ul, d: di, x, .. } = *d;
     let Art { j, h, mut m } = k.ia;
-    let r = &kin.r;
     let (ax, ay, l) = (ua.x * di, ua.y * di, ul * di);
     let (jxx, jxy, jyy) = ((-ax).mad(ua.x, j.xx), (-ax).mad(ua.y, j.xy), (-ay).mad(ua.y, j.yy));
     let (h0, h1) = (ul.mad(-ax, h.r[0]), ul.mad(-ay, h.r[1]));
     m.sub_outer(l, ul);
-    let (cx, cy, lx, ly) = (kin.w.y * s, -(kin.w.x * s), kin.v.y * s, -(kin.v.x * s));
+    let (cx, cy, lx, ly) = (w.y * s, -(w.x * s), v.y * s, -(v.x * s));
     let nx = ua.x.mad(x, jxx.mad(cx, jxy.mad(cy, h0.x.mad(lx, h0.y.mad(ly, k.n.x)))));
     let ny = ua.y.mad(x, jxy.mad(cx, jyy.mad(cy, h1.x.mad(lx, h1.y.mad(ly, k.n.y)))));
     let f = ul.mad(x, h0.mad(cx, h1.mad(cy, m.row0().mad(lx, m.row1().mad(ly, k.f)))));
-    let (g0, g1) = (r.mv(h0), r.mv(h1));
-    let turned = Art { j: flat_rotated(r, jxx, jxy, jyy), h: outer2(r, g0, g1), m: m.rotated(r) };
     let f = r.mv(f);
-    Acc { ia: turned.moved(p), f, n: p.cross_add(f, r.mv(V3::new(nx, ny, tau))) }
-}
-
-/// `R J Rᵀ` of a J whose z row and column are zero.
-#[inline(always)]
-fn flat_rotated<T: Real>(r: &M3<T>, xx: T, xy: T, yy: T) -> S3<T> {
-    let (c0, c1) = (r.col0(), r.col1());
-    let (a, b) = (c1.mad(xy, c0 * xx), c1.mad(yy, c0 * xy));
-    S3 {
-        xx: a.x.mad(c0.x, b.x * c1.x),
-        xy: a.x.mad(c0.y, b.x * c1.y),
-        xz: a.x.mad(c0.z, b.x * c1.z),
-        yy: a.y.mad(c0.y, b.y * c1.y),
-        yz: a.y.mad(c0.z, b.y * c1.z),
-        zz: a.z.mad(c0.z, b.z * c1.z),
-    }
-}
-
-/// `R [g0; g1; 0]` where the rows are already turned.
-#[inline(always)]
-fn outer2<T: Real>(r: &M3<T>, g0: V3<T>, g1: V3<T>) -> M3<T> {
-    M3::rows(g0.mad(r.r[0].x, g1 * r.r[0].y), g0.mad(r.r[1].x, g1 * r.r[1].y), g0.mad(r.r[2].x, g1 * r.r[2].y))
+    Acc { ia: r.flat([jxx, jxy, jyy], [h0, h1], m, p), f, n: p.cross_add(f, r.mv(V3::new(nx, ny, tau))) }
 }

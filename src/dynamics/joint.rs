@@ -2,6 +2,7 @@
 
 use super::aba::Kin;
 use super::articulated::Spatial;
+use super::turn::{Planar, Turn};
 use crate::math::{M3, Real, V3};
 use crate::model::{Body, JointType, rotation};
 
@@ -107,13 +108,32 @@ pub(super) fn turned<T: Real>((r, p): (&M3<T>, V3<T>), (q, s): (T, T), (pw, pv):
     Kin { r, w, v: r.tv(pw.cross_add(p, pv)) }
 }
 
-/// Acceleration of a body that turns about z with speed `s`, without that of its joint; its parent's acceleration last.
+/// The same of one whose joint lies along the `K`th axis of its parent's frame.
 #[inline(always)]
-pub(super) fn turned_outward<T: Real>(kin: &Kin<T>, p: V3<T>, s: T, (pa, pl): (V3<T>, V3<T>)) -> (V3<T>, V3<T>) {
-    let mut a = kin.r.tv(pa);
-    let mut l = kin.r.tv(pa.cross_add(p, pl));
-    (a.x, a.y) = (kin.w.y.mad(s, a.x), (-kin.w.x).mad(s, a.y));
-    (l.x, l.y) = (kin.v.y.mad(s, l.x), (-kin.v.x).mad(s, l.y));
+pub(super) fn turned_along<T: Real, const K: usize>(
+    (r, p): (&M3<T>, V3<T>),
+    (q, s): (T, T),
+    (pw, pv): (V3<T>, V3<T>),
+) -> Kin<T> {
+    let r = Planar::<T, K>::of(r).turned_z(q.sin_cos());
+    let mut w = r.tv(pw);
+    w.z += s;
+    Kin { r: r.matrix(), w, v: r.tv(pw.cross_add(p, pv)) }
+}
+
+/// Acceleration of a body that turns about z with speed `s`, without that of its joint; its motion; its parent's acceleration
+/// last.
+#[inline(always)]
+pub(super) fn turned_outward<T: Real>(
+    (r, p): (&impl Turn<T>, V3<T>),
+    s: T,
+    (w, v): (V3<T>, V3<T>),
+    (pa, pl): (V3<T>, V3<T>),
+) -> (V3<T>, V3<T>) {
+    let mut a = r.tv(pa);
+    let mut l = r.tv(pa.cross_add(p, pl));
+    (a.x, a.y) = (w.y.mad(s, a.x), (-w.x).mad(s, a.y));
+    (l.x, l.y) = (v.y.mad(s, l.x), (-v.x).mad(s, l.y));
     (a, l)
 }
 

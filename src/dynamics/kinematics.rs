@@ -1,8 +1,10 @@
 //! Where the bodies are and how they move, in the world.
 
+use super::articulated::Spatial;
 use super::joint::{joint_transform, joint_velocity, turned_x, turned_z};
+use super::turn::{Planar, Turn};
 use crate::math::{M3, Mat3, Pose, Quat, Real, Twist, V3, Vec3};
-use crate::model::{JointType, LinkFrame, Model};
+use crate::model::{Along, JointType, LinkFrame, Model};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
 
 /// Frames and velocities of all bodies. Makes its memory once.
@@ -65,13 +67,27 @@ pub fn kinematics_of(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), bo
 #[inline(always)]
 fn one(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), i: usize) {
     let b = &m.bodies[i];
-    let (r, p) = joint_transform(b, q);
-    let own = joint_velocity(b, q, v);
-    let (w0, v0, r0) = (k.w[b.parent], k.v[b.parent], k.r[b.parent]);
+    if b.joint == JointType::Revolute {
+        let turn = Real::sin_cos(q[b.q]);
+        let spin = Spatial { a: V3::new(0.0, 0.0, v[b.v]), l: V3::default() };
+        return match b.along {
+            Some(Along::X) => put(k, (b.parent, i), (Planar::<f64, 0>::of(&b.tree_r).turned_z(turn), b.tree_p), spin),
+            Some(Along::Y) => put(k, (b.parent, i), (Planar::<f64, 1>::of(&b.tree_r).turned_z(turn), b.tree_p), spin),
+            Some(Along::Z) => put(k, (b.parent, i), (Planar::<f64, 2>::of(&b.tree_r).turned_z(turn), b.tree_p), spin),
+            None => put(k, (b.parent, i), (turned_z(&b.tree_r, turn), b.tree_p), spin),
+        };
+    }
+    put(k, (b.parent, i), joint_transform(b, q), joint_velocity(b, q, v));
+}
+
+/// A body on its parent: its frame in the parent's, and its joint's own velocity.
+#[inline(always)]
+fn put(k: &mut Kinematics, (on, i): (usize, usize), (r, p): (impl Turn<f64>, V3<f64>), own: Spatial<f64>) {
+    let (w0, v0, r0) = (k.w[on], k.v[on], k.r[on]);
     k.w[i] = r.tv(w0) + own.a;
     k.v[i] = r.tv(w0.cross_add(p, v0)) + own.l;
-    k.p[i] = r0.mv(p) + k.p[b.parent];
-    k.r[i] = r0.mm(&r);
+    k.p[i] = r0.mv(p) + k.p[on];
+    k.r[i] = M3::rows(r.tv(r0.r[0]), r.tv(r0.r[1]), r.tv(r0.r[2]));
 }
 
 /// Frames and velocities that know their state: to ask for the same again costs a comparison.

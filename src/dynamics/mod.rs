@@ -24,6 +24,7 @@ mod layout;
 mod limbs;
 mod response;
 mod rnea;
+mod turn;
 
 pub use aba::{Dof, Workspace, aba, aba_fused, aba_hybrid};
 pub use ball::{BallIn, BallLock};

@@ -182,7 +182,14 @@ fn numbers(stays: &[bool]) -> Vec<Option<usize>> {
 
 /// The body as a floating one on the world.
 fn set_free(b: &Body) -> Body {
-    Body { parent: 0, joint: JointType::Floating, tree_r: M3::identity(), tree_p: V3::default(), ..b.clone() }
+    Body {
+        parent: 0,
+        joint: JointType::Floating,
+        tree_r: M3::identity(),
+        tree_p: V3::default(),
+        along: None,
+        ..b.clone()
+    }
 }
 
 impl Rbx {

@@ -101,7 +101,7 @@ fn read_joint(b: &Body, at: &Relative, q: &mut [f64], v: &mut [f64]) -> Gap {
             v[..6].copy_from_slice(&[at.w.x, at.w.y, at.w.z, at.v.x, at.v.y, at.v.z]);
         }
     }
-    let makes = Body { q: 0, tree_r: M3::identity(), tree_p: V3::default(), ..b.clone() };
+    let makes = Body { q: 0, tree_r: M3::identity(), tree_p: V3::default(), along: None, ..b.clone() };
     let (turned, shifted) = joint_transform(&makes, q);
     Gap { linear: size(at.p - shifted), angular: angle(&turned.tmm(&at.r)) }
 }

@@ -306,16 +306,9 @@ impl<'a> Builder<'a> {
 
     fn add_body(&mut self, parent: usize, joint: JointType, tree: Pose) -> usize {
         let m = &mut self.model;
-        m.bodies.push(Body {
-            parent,
-            joint,
-            q: m.nq,
-            v: m.nv,
-            ball: m.balls,
-            tree_r: M3::from(*tree.rotation.to_rotation_matrix().matrix()),
-            tree_p: V3::from(tree.translation.vector),
-            ..world()
-        });
+        let mut body = Body { parent, joint, q: m.nq, v: m.nv, ball: m.balls, ..world() };
+        body.put((M3::from(*tree.rotation.to_rotation_matrix().matrix()), V3::from(tree.translation.vector)));
+        m.bodies.push(body);
         m.nq += joint.nq();
         m.nv += joint.nv();
         m.balls += usize::from(joint == JointType::Spherical);
@@ -351,6 +344,7 @@ fn world() -> Body {
         ball: 0,
         tree_r: M3::identity(),
         tree_p: V3::default(),
+        along: None,
         mass: 0.0,
         mc: V3::default(),
         inertia: S3::default(),

@@ -216,6 +216,15 @@ impl JointType {
     }
 }
 
+/// An axis of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Along {
+    X,
+    Y,
+    Z,
+}
+
 /// A rigid body with the joint that carries it.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -233,12 +242,33 @@ pub struct Body {
     pub tree_r: M3<f64>,
     /// Joint frame's origin in the parent body's frame, m.
     pub tree_p: V3<f64>,
+    /// Axis of the parent body's frame that the joint frame's z lies along, either way, if its other numbers are exactly zero.
+    /// The dynamics leave products with these zeros out.
+    pub along: Option<Along>,
     /// kg.
     pub mass: f64,
     /// Mass × centre of mass in the body frame, kg·m.
     pub mc: V3<f64>,
     /// Inertia about the body frame's origin, kg·m².
     pub inertia: S3<f64>,
+}
+
+impl Body {
+    /// Puts the joint frame (axes, origin) into the parent body's frame. Where z lies along an axis but for rounding, it does
+    /// so exactly.
+    pub fn put(&mut self, (r, p): (M3<f64>, V3<f64>)) {
+        (self.tree_r, self.tree_p, self.along) = (r, p, None);
+        let z = r.col2();
+        let small = |x: f64| x.abs() < 8.0 * f64::EPSILON;
+        for (k, along) in [Along::X, Along::Y, Along::Z].into_iter().enumerate() {
+            let others = [[z.y, z.z], [z.x, z.z], [z.x, z.y]][k];
+            if others.into_iter().chain([r.r[k].x, r.r[k].y]).all(small) {
+                self.tree_r.r.iter_mut().for_each(|row| row.z = 0.0);
+                self.tree_r.r[k] = V3::new(0.0, 0.0, r.r[k].z.signum());
+                self.along = Some(along);
+            }
+        }
+    }
 }
 
 /// The immutable model.
@@ -354,7 +384,7 @@ impl Model {
         }
         for (b, _) in self.bodies.iter_mut().zip(stands).skip(1).filter(|(_, stands)| *stands) {
             if b.parent == 0 && b.joint != JointType::Floating {
-                (b.tree_r, b.tree_p) = (r.mm(&b.tree_r), r.mv(b.tree_p) + p);
+                b.put((r.mm(&b.tree_r), r.mv(b.tree_p) + p));
             }
         }
         let base_pose = robot.map_or(&mut self.base_pose, |i| &mut self.joined[i].base_pose);

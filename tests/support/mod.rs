@@ -97,6 +97,7 @@ fn body(rng: &mut Random, parent: usize, joint: JointType) -> Body {
         ball: 0,
         tree_r: M3::from(*rng.rotation().to_rotation_matrix().matrix()),
         tree_p: V3::from(rng.vec3(0.3)),
+        along: None,
         mass,
         mc: V3::from(c * mass),
         inertia: S3::from(i),

@@ -148,7 +148,7 @@ fn solve<const HYBRID: bool>(
         let speed = pick(v, &step.v);
         if !HYBRID || step.v.iter().all(|v| ws.dofs[*v].plain) {
             let tau = if HYBRID { X::from_numbers(step.v.map(|v| ws.dofs[v].tau)) } else { pick(tau, &step.v) };
-            given[s] = revolute(&k, step.p, &kin[s], speed, (&mut dof[s], tau));
+            given[s] = revolute(&k, (&kin[s].r, step.p), (kin[s].w, kin[s].v), speed, (&mut dof[s], tau));
         } else {
             (given[s], dof[s]) = loaded(ws, step, (k, &kin[s]), speed);
         }
@@ -168,7 +168,8 @@ fn solve<const HYBRID: bool>(
         outward::<f64, HYBRID>(m, ws, *i, (q, v), qdd);
     }
     for (s, step) in steps.iter().enumerate() {
-        let (mut a, l) = turned_outward(&kin[s], step.p, pick(v, &step.v), above(step, s, &ws.kin, kin));
+        let (mut a, l) =
+            turned_outward((&kin[s].r, step.p), pick(v, &step.v), (kin[s].w, kin[s].v), above(step, s, &ws.kin, kin));
         let d = &dof[s];
         let reach = d.ua.dot(a) + d.ul.dot(l);
         let acceleration = (-d.d).mad(reach, d.x);
@@ -232,7 +233,7 @@ fn loaded(ws: &Workspace<f64>, step: &Step, (mut k, kin): (Acc<X>, &Kin<X>), spe
         plain: false,
     };
     let (mut plain_dof, mut dof) = (Dof::default(), Dof::default());
-    let plain = revolute(&k, step.p, kin, speed, (&mut plain_dof, lanes.tau));
+    let plain = revolute(&k, (&kin.r, step.p), (kin.w, kin.v), speed, (&mut plain_dof, lanes.tau));
     eliminate_axis(&mut k, axis_z(), &mut dof, &lanes);
     k.push(turning_bias(speed, (kin.w, kin.v)));
     let mut given = k.to_parent(&kin.r, step.p);
