@@ -4,6 +4,7 @@
 //! [`super::aba`]: the bits are the same. What is gained depends on how many bodies stand side by side: about half of the
 //! time on a humanoid, nothing on a chain.
 
+mod frames;
 mod schedule;
 
 use super::aba::{Dof, Kin, inward, moved, outward};
@@ -17,6 +18,7 @@ use crate::math::Lanes4;
 use crate::math::X4;
 use crate::math::{Lane, M3, Real, V3};
 use crate::model::Model;
+pub(super) use frames::Frames;
 use schedule::{Below, Place, Schedule, Step};
 
 /// Four bodies.
