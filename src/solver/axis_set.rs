@@ -8,6 +8,7 @@
 //! A sliding axis moves with the mean of its speeds at the start and the end of the step, of second order. One that stands,
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
+use super::between::Between;
 use super::books::Books;
 use super::contacts::Contacts;
 use super::contested::Contest;
@@ -56,15 +57,21 @@ pub struct AxisSet {
     /// The drives, and what became of them.
     pub books: Books,
     pub(super) laws: Vec<Law>,
+    /// Effects that the laws were made with.
+    effects: Effects,
+    /// Axes whose laws need not be made anew.
+    pub(super) between: Vec<Between>,
+    /// Is there an axis that is put back into its range after the step?
+    pub(super) pushes: bool,
     /// Per axis: 2 j on segment j, 2 k + 1 on riser k.
     pub(super) place: Vec<usize>,
     /// Per axis: it moves with its speed at the end of the step.
     pub(super) at_end: Vec<bool>,
     /// Per axis: its slope was stiff against the last step.
-    stiff: Vec<bool>,
+    pub(super) stiff: Vec<bool>,
     /// Kinds of the riser an axis stood on at the end of the last step; 0 = it slid.
     pub(super) memory: Vec<u8>,
-    moves: Vec<isize>,
+    pub(super) moves: Vec<isize>,
     /// Per axis of a 3DOF group: which of its group's locks is its own, while it is locked.
     pub(super) lock: Vec<usize>,
     pub(super) rates: Vec<EulerRates>,
@@ -109,6 +116,9 @@ impl AxisSet {
         Self {
             books: Books::new(model),
             laws: vec![Law::default(); n],
+            effects: Effects::NONE,
+            between: Between::all(model),
+            pushes: false,
             place: vec![0; n],
             at_end: vec![true; n],
             stiff: vec![false; n],
@@ -154,8 +164,18 @@ impl AxisSet {
         (self.best, self.patience) = (usize::MAX, PATIENCE);
         (self.passes, self.h) = (0, start.h);
         self.contests.fill(Contest::default());
+        if self.effects != effects {
+            self.laws.iter_mut().for_each(|law| law.plain = false);
+            self.effects = effects;
+        }
+        self.pushes = false;
         for (i, axis) in m.axes.iter().enumerate() {
             if self.rests(i) {
+                self.between[i].on = false;
+                self.pushes |= self.laws[i].push != 0.0;
+                continue;
+            }
+            if self.prepare_between(i, start, effects) {
                 continue;
             }
             let (q, v) = self.axis_state(m, axis, start.state);
@@ -177,6 +197,7 @@ impl AxisSet {
             } else {
                 self.laws[i].clear()
             }
+            self.pushes |= self.laws[i].push != 0.0;
             self.place[i] = self.laws[i].guess(v, self.memory[i]);
             self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }
@@ -249,6 +270,9 @@ impl AxisSet {
     fn misfits(&mut self, m: &Model, ws: &Workspace<f64>, (h, qdd): (f64, &[f64])) -> usize {
         let (mut count, mut breaking) = (0, 0);
         for (i, axis) in m.axes.iter().enumerate() {
+            if self.stays_between(ws, i, (h, qdd)) {
+                continue;
+            }
             self.moves[i] = 0;
             if self.rests(i) {
                 continue;

@@ -70,12 +70,14 @@ pub struct Law {
     pub(super) stiction: f64,
     /// The same for an axis that stood at the start of the step, 0 for others.
     stood: f64,
-    /// Soft stops: their torque per speed, and the speeds at which they begin.
-    soft: (f64, f64, f64),
+    /// Soft stops: their torque per speed; of all stops the speeds at which they begin.
+    pub(super) soft: (f64, f64, f64),
     /// Outside its range: by how much it is put back after the step, rad or m, signed.
     pub(super) push: f64,
     /// The axis stands in a soft stop: a spring, whose speed is that at the end of the step.
     pub(super) in_soft_stop: bool,
+    /// Two hard stops or none, damping, and nothing else: see [`super::between`].
+    pub(super) plain: bool,
     damping: f64,
     friction: f64,
     pub(super) drive: DriveLaw,
@@ -124,7 +126,29 @@ impl Law {
         (self.count, self.segments[0]) = (0, Segment::default());
         (self.stiction, self.stood, self.push) = (0.0, 0.0, 0.0);
         (self.damping, self.friction, self.soft) = (0.0, 0.0, (0.0, f64::NEG_INFINITY, f64::INFINITY));
-        (self.in_soft_stop, self.drive) = (false, DriveLaw::Idle);
+        (self.in_soft_stop, self.plain, self.drive) = (false, false, DriveLaw::Idle);
+    }
+
+    /// What touches a stop is nearer to it than this, rad or m.
+    #[inline(always)]
+    pub(super) fn touching(q: f64) -> f64 {
+        AT_STOP * (1.0 + q.abs())
+    }
+
+    /// Are these speeds knots of their own?
+    #[inline(always)]
+    pub(super) fn are_apart(low: f64, high: f64) -> bool {
+        high - low > SAME
+    }
+
+    fn is_plain(&self) -> bool {
+        let still = self.drive == DriveLaw::Idle && self.friction == 0.0 && self.stood == 0.0;
+        let stops = match self.knots[..self.count] {
+            [] => true,
+            [low, high] => low.kinds == LOWER | WALL_LEFT && high.kinds == UPPER | WALL_RIGHT,
+            _ => false,
+        };
+        still && stops && self.push == 0.0
     }
 
     /// A servo without a bound on its torque wants what the stops allow.
@@ -157,7 +181,7 @@ impl Law {
     /// spring. Beyond a hard one the axis may only come back; its ERP's share of the way is a push that gives no speed.
     fn stops(&mut self, input: &AxisInput, (h, whole): (f64, f64)) {
         let (axis, soft) = (input.axis, input.axis.stop.cfm > 0.0);
-        let touching = AT_STOP * (1.0 + input.q.abs());
+        let touching = Self::touching(input.q);
         let slope = if soft { axis.stop.hk_plus_d(h, whole) } else { 0.0 };
         let room = |gap: f64| match gap {
             _ if gap.abs() <= touching => 0.0,
@@ -219,6 +243,7 @@ impl Law {
             let intercept = before.intercept + knot.steeper * knot.speed - knot.drop;
             self.segments[k + 1] = Segment { intercept, slope };
         }
+        self.plain = self.is_plain();
     }
 
     /// How much more than this the torque can fall (`falls`) or rise before riser `k` is left; infinite at a wall.

@@ -83,6 +83,9 @@ impl AxisSet {
         } else {
             end_velocities(m, pass, qdd, u);
         }
+        if !self.pushes {
+            return;
+        }
         for (axis, law) in m.axes.iter().zip(&self.laws).filter(|(_, law)| law.push != 0.0) {
             if let AxisSlot::Scalar { v, .. } = axis.slot {
                 u[v] += law.push / pass.h;

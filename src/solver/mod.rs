@@ -4,6 +4,7 @@
 //! together are solved as a set ([`AxisSet`]) with the hybrid dynamics.
 
 mod axis_set;
+mod between;
 mod books;
 mod command;
 mod cone;
