@@ -24,6 +24,7 @@ mod layout;
 mod limbs;
 mod response;
 mod rnea;
+mod velocities;
 
 pub use aba::{Dof, Workspace, aba, aba_fused, aba_hybrid};
 pub use ball::{BallIn, BallLock};
@@ -42,6 +43,7 @@ pub use layout::{CHUNK, Layout};
 pub use limbs::{Limbs, aba_limbs};
 pub use response::{Mobility, Push, Response};
 pub use rnea::rnea;
+pub use velocities::velocities_of;
 
 /// Inputs of one velocity coordinate to the hybrid dynamics: a free one gets a torque, a locked one an acceleration.
 #[derive(Clone, Copy, Debug)]

@@ -21,6 +21,14 @@ pub unsafe trait Lane: Real {
         unsafe { std::slice::from_raw_parts(std::ptr::from_ref(self).cast(), Self::COUNT) }
     }
 
+    /// Of as many numbers as there are lanes.
+    #[inline(always)]
+    fn read(x: &[f64]) -> Self {
+        let mut lanes = Self::of(0.0);
+        lanes.numbers_mut().copy_from_slice(x);
+        lanes
+    }
+
     /// The same, to write.
     #[inline(always)]
     fn numbers_mut(&mut self) -> &mut [f64] {
@@ -39,6 +47,12 @@ impl Lanes4 {
     #[cfg(not(target_arch = "x86_64"))]
     pub(crate) fn from_numbers(x: [f64; 4]) -> Self {
         Self(x)
+    }
+
+    /// Lane n of each, for every n.
+    #[cfg(not(target_arch = "x86_64"))]
+    pub(crate) fn transposed(rows: [Self; 4]) -> [[f64; 4]; 4] {
+        std::array::from_fn(|lane| rows.map(|row| row.0[lane]))
     }
 }
 

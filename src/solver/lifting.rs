@@ -54,7 +54,7 @@ impl AxisSet {
         (qdd, lift): (&[f64], &mut [f64]),
     ) -> bool {
         let Some(contacts) = c.contacts.as_mut().filter(|contacts| !contacts.is_empty()) else { return false };
-        if !contacts.aim_lift(m, &mut c.rows, pass, |u| self.speeds(m, pass, qdd, u)) {
+        if !contacts.aim_lift((m, ws), &mut c.rows, pass, |u| self.speeds(m, pass, qdd, u)) {
             return false;
         }
         for k in 0..c.pairs.len() {

@@ -190,13 +190,40 @@ impl Rows {
     /// Takes the responses and softnesses of a block as they are now; it takes part from here on, unless nothing moves
     /// when it pushes.
     pub fn seal(&mut self, block: usize) {
+        self.blocks[block].inner = self.inner(block);
+    }
+
+    fn inner(&self, block: usize) -> Inner {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine has just been asked for it.
+            return unsafe { self.inner_wide(block) };
+        }
+        self.inner_any(block)
+    }
+
+    /// [`Rows::inner_any`] in wider registers: the same operations, the same bits.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn inner_wide(&self, block: usize) -> Inner {
+        self.inner_any(block)
+    }
+
+    #[inline(always)]
+    fn inner_any(&self, block: usize) -> Inner {
         let b = &self.blocks[block];
-        let inner = match b.rows {
+        match b.rows {
             1 => single(self.own(b, 0, 0)),
             2 => pair([self.own(b, 0, 0), self.own(b, 0, 1), self.own(b, 1, 1)]),
-            _ => cone([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|(i, k)| self.own(b, i, k))),
-        };
-        self.blocks[block].inner = inner;
+            _ => cone([
+                self.own(b, 0, 0),
+                self.own(b, 0, 1),
+                self.own(b, 0, 2),
+                self.own(b, 1, 1),
+                self.own(b, 1, 2),
+                self.own(b, 2, 2),
+            ]),
+        }
     }
 
     /// Takes a block out, and its impulses.
@@ -208,6 +235,7 @@ impl Rows {
         }
     }
 
+    #[inline(always)]
     fn own(&self, b: &Block, i: usize, k: usize) -> f64 {
         let length = b.ids.len() * CHUNK;
         let y = |n: usize| &self.values[b.values + n * length..b.values + (n + 1) * length];
@@ -261,11 +289,33 @@ impl Rows {
 
     /// w of the impulses.
     pub(super) fn gather(&mut self) {
-        self.w.fill(0.0);
-        for b in 0..self.blocks.len() {
-            for n in 0..self.blocks[b].rows {
-                let x = self.rows[self.blocks[b].first + n].impulse;
-                self.push(b, n, x);
+        let mut w = std::mem::take(&mut self.w);
+        self.gather_into(&mut w);
+        self.w = w;
+    }
+
+    fn gather_into(&self, w: &mut [f64]) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine has just been asked for it.
+            return unsafe { self.gather_wide(w) };
+        }
+        self.gather_any(w);
+    }
+
+    /// [`Rows::gather_any`] in wider registers: the same operations, the same bits.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn gather_wide(&self, w: &mut [f64]) {
+        self.gather_any(w);
+    }
+
+    #[inline(always)]
+    fn gather_any(&self, w: &mut [f64]) {
+        w.fill(0.0);
+        for b in &self.blocks {
+            for (n, row) in self.rows[b.first..b.first + b.rows].iter().enumerate() {
+                self.push_into(w, b, n, row.impulse);
             }
         }
     }
@@ -315,14 +365,6 @@ impl Rows {
             }
         }
         (sum[0] + sum[1]) + (sum[2] + sum[3])
-    }
-
-    /// `w += y x`.
-    #[inline(always)]
-    pub(super) fn push(&mut self, block: usize, n: usize, x: f64) {
-        let mut w = std::mem::take(&mut self.w);
-        self.push_into(&mut w, &self.blocks[block], n, x);
-        self.w = w;
     }
 
     /// `w += y x`, of another w.
@@ -378,6 +420,7 @@ fn cone(h: [f64; 6]) -> Inner {
 }
 
 /// Of two rows over the same chunks.
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sum = [0.0; CHUNK];
     for (a, b) in a.chunks_exact(CHUNK).zip(b.chunks_exact(CHUNK)) {

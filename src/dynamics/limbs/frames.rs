@@ -4,7 +4,7 @@ use super::schedule::{Schedule, Step, frames};
 use super::{LANES, X, pick};
 use crate::dynamics::Kinematics;
 use crate::dynamics::joint::turned_z;
-use crate::math::{Lane, M3, Real, V3};
+use crate::math::{M3, Real, V3};
 use crate::model::Model;
 
 /// The order of computation.
@@ -115,10 +115,15 @@ fn vectors(v: [V3<f64>; LANES]) -> V3<X> {
 
 #[inline(always)]
 fn scatter(f: &Frame<X>, k: &mut Kinematics, row: &Row) {
-    let [r0, r1, r2] = f.r.r;
-    for (lane, i) in row.body.iter().enumerate().filter(|(lane, _)| row.own[*lane]) {
-        let of = |v: &V3<X>| V3::new(v.x.numbers()[lane], v.y.numbers()[lane], v.z.numbers()[lane]);
-        k.r[*i] = M3::rows(of(&r0), of(&r1), of(&r2));
-        (k.p[*i], k.w[*i], k.v[*i]) = (of(&f.p), of(&f.w), of(&f.v));
+    let ([r0, r1, r2], p, w, v) = (f.r.r, f.p, f.w, f.v);
+    let (a, b) = (X::transposed([r0.x, r0.y, r0.z, r1.x]), X::transposed([r1.y, r1.z, r2.x, r2.y]));
+    let (c, d) = (X::transposed([r2.z, p.x, p.y, p.z]), X::transposed([w.x, w.y, w.z, v.x]));
+    let e = X::transposed([v.y, v.z, v.y, v.z]);
+    for (lane, i) in row.body.iter().copied().enumerate().filter(|(lane, _)| row.own[*lane]) {
+        let (a, b, c, d, e) = (a[lane], b[lane], c[lane], d[lane], e[lane]);
+        k.r[i] = M3::rows(V3::new(a[0], a[1], a[2]), V3::new(a[3], b[0], b[1]), V3::new(b[2], b[3], c[0]));
+        k.p[i] = V3::new(c[1], c[2], c[3]);
+        k.w[i] = V3::new(d[0], d[1], d[2]);
+        k.v[i] = V3::new(d[3], e[0], e[1]);
     }
 }
