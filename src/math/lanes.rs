@@ -48,12 +48,6 @@ impl Lanes4 {
     pub(crate) fn from_numbers(x: [f64; 4]) -> Self {
         Self(x)
     }
-
-    /// Lane n of each, for every n.
-    #[cfg(not(target_arch = "x86_64"))]
-    pub(crate) fn transposed(rows: [Self; 4]) -> [[f64; 4]; 4] {
-        std::array::from_fn(|lane| rows.map(|row| row.0[lane]))
-    }
 }
 
 // SAFETY: repr(transparent) over four numbers.

@@ -36,21 +36,6 @@ impl X4<false> {
     }
 }
 
-impl X4<false> {
-    /// Lane n of each, for every n.
-    #[inline(always)]
-    pub(crate) fn transposed([a, b, c, d]: [Self; 4]) -> [[f64; 4]; 4] {
-        // SAFETY: values of this type exist, so the machine has AVX; four lanes are four numbers.
-        unsafe {
-            let (ab, cd) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpacklo_pd(c.0, d.0));
-            let (ba, dc) = (_mm256_unpackhi_pd(a.0, b.0), _mm256_unpackhi_pd(c.0, d.0));
-            let low = [_mm256_permute2f128_pd::<0x20>(ab, cd), _mm256_permute2f128_pd::<0x20>(ba, dc)];
-            let high = [_mm256_permute2f128_pd::<0x31>(ab, cd), _mm256_permute2f128_pd::<0x31>(ba, dc)];
-            std::mem::transmute([low[0], low[1], high[0], high[1]])
-        }
-    }
-}
-
 impl<const FUSED: bool> X8<FUSED> {
     /// Has this machine what it needs?
     pub fn is_available() -> bool {

@@ -5,7 +5,8 @@
 //! comes in (a command, a stop, stiff damping), they are asked.
 
 use super::axis_set::{AxisSet, StepStart};
-use super::law::Law;
+use super::drive::DriveLaw;
+use super::law::{AT_STOP, LOWER, Law, SAME, UPPER, WALL_LEFT, WALL_RIGHT};
 use super::{AxisCommand, Mode};
 use crate::dynamics::{DofIn, Workspace};
 use crate::model::{Axis, AxisSlot, DriveLimits, Effects, Model};
@@ -125,6 +126,29 @@ impl AxisSet {
 }
 
 impl Law {
+    /// What touches a stop is nearer to it than this, rad or m.
+    #[inline(always)]
+    pub(super) fn touching(q: f64) -> f64 {
+        AT_STOP * (1.0 + q.abs())
+    }
+
+    /// Are these speeds knots of their own?
+    #[inline(always)]
+    pub(super) fn are_apart(low: f64, high: f64) -> bool {
+        high - low > SAME
+    }
+
+    /// Two hard stops or none, and nothing but damping.
+    pub(super) fn is_plain(&self) -> bool {
+        let still = self.drive == DriveLaw::Idle && self.friction == 0.0 && self.stood == 0.0;
+        let stops = match self.knots[..self.count] {
+            [] => true,
+            [low, high] => low.kinds == LOWER | WALL_LEFT && high.kinds == UPPER | WALL_RIGHT,
+            _ => false,
+        };
+        still && stops && self.push == 0.0
+    }
+
     /// Takes over the gaps to hard stops of a law that is plain; the speeds that reach them. `None` where it touches one or is beyond.
     #[inline(always)]
     fn pass_between(&mut self, (below, above): (f64, f64), q: f64, h: f64) -> Option<(f64, f64)> {

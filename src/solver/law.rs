@@ -19,9 +19,9 @@ use crate::model::{Axis, DriveLimits, Effects};
 /// Knots at the most: friction, two of the drive, two stops.
 const KNOTS: usize = 5;
 /// Speeds nearer than this are one knot, rad/s or m/s.
-const SAME: f64 = 1e-12;
+pub(super) const SAME: f64 = 1e-12;
 /// An axis this near to its stop touches it: rounding of the step that brought it there; rad or m, relative.
-const AT_STOP: f64 = 1e-14;
+pub(super) const AT_STOP: f64 = 1e-14;
 /// Relative tolerance of the fit.
 const FIT: f64 = 1e-11;
 
@@ -69,7 +69,7 @@ pub struct Law {
     /// By how much static friction exceeds the dynamic one while the axis is on the riser of its friction.
     pub(super) stiction: f64,
     /// The same for an axis that stood at the start of the step, 0 for others.
-    stood: f64,
+    pub(super) stood: f64,
     /// Soft stops: their torque per speed; of all stops the speeds at which they begin.
     pub(super) soft: (f64, f64, f64),
     /// Outside its range: by how much it is put back after the step, rad or m, signed.
@@ -79,7 +79,7 @@ pub struct Law {
     /// Two hard stops or none, damping, and nothing else: see [`super::between`].
     pub(super) plain: bool,
     damping: f64,
-    friction: f64,
+    pub(super) friction: f64,
     pub(super) drive: DriveLaw,
 }
 
@@ -127,28 +127,6 @@ impl Law {
         (self.stiction, self.stood, self.push) = (0.0, 0.0, 0.0);
         (self.damping, self.friction, self.soft) = (0.0, 0.0, (0.0, f64::NEG_INFINITY, f64::INFINITY));
         (self.in_soft_stop, self.plain, self.drive) = (false, false, DriveLaw::Idle);
-    }
-
-    /// What touches a stop is nearer to it than this, rad or m.
-    #[inline(always)]
-    pub(super) fn touching(q: f64) -> f64 {
-        AT_STOP * (1.0 + q.abs())
-    }
-
-    /// Are these speeds knots of their own?
-    #[inline(always)]
-    pub(super) fn are_apart(low: f64, high: f64) -> bool {
-        high - low > SAME
-    }
-
-    fn is_plain(&self) -> bool {
-        let still = self.drive == DriveLaw::Idle && self.friction == 0.0 && self.stood == 0.0;
-        let stops = match self.knots[..self.count] {
-            [] => true,
-            [low, high] => low.kinds == LOWER | WALL_LEFT && high.kinds == UPPER | WALL_RIGHT,
-            _ => false,
-        };
-        still && stops && self.push == 0.0
     }
 
     /// A servo without a bound on its torque wants what the stops allow.
@@ -226,9 +204,9 @@ impl Law {
             at += usize::from(k.speed < knot.speed);
         }
         if self.count < KNOTS {
-            // Mostly they come in order.
-            if at < self.count {
-                self.knots.copy_within(at..self.count, at + 1);
+            // Mostly they come in order; a call to move one or two would cost more.
+            for k in (at..self.count).rev() {
+                self.knots[k + 1] = self.knots[k];
             }
             self.knots[at] = knot;
             self.count += 1;

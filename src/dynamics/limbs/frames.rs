@@ -1,7 +1,7 @@
 //! Frames and velocities of one robot's bodies in the world, limbs side by side: the bits of [`super::super::kinematics`].
 
 use super::schedule::{Schedule, Step, frames};
-use super::{LANES, X, pick};
+use super::{LANES, X, pick, single};
 use crate::dynamics::Kinematics;
 use crate::dynamics::joint::turned_z;
 use crate::math::{M3, Real, V3};
@@ -115,15 +115,9 @@ fn vectors(v: [V3<f64>; LANES]) -> V3<X> {
 
 #[inline(always)]
 fn scatter(f: &Frame<X>, k: &mut Kinematics, row: &Row) {
-    let ([r0, r1, r2], p, w, v) = (f.r.r, f.p, f.w, f.v);
-    let (a, b) = (X::transposed([r0.x, r0.y, r0.z, r1.x]), X::transposed([r1.y, r1.z, r2.x, r2.y]));
-    let (c, d) = (X::transposed([r2.z, p.x, p.y, p.z]), X::transposed([w.x, w.y, w.z, v.x]));
-    let e = X::transposed([v.y, v.z, v.y, v.z]);
-    for (lane, i) in row.body.iter().copied().enumerate().filter(|(lane, _)| row.own[*lane]) {
-        let (a, b, c, d, e) = (a[lane], b[lane], c[lane], d[lane], e[lane]);
-        k.r[i] = M3::rows(V3::new(a[0], a[1], a[2]), V3::new(a[3], b[0], b[1]), V3::new(b[2], b[3], c[0]));
-        k.p[i] = V3::new(c[1], c[2], c[3]);
-        k.w[i] = V3::new(d[0], d[1], d[2]);
-        k.v[i] = V3::new(d[3], e[0], e[1]);
+    let [r0, r1, r2] = f.r.r;
+    for (lane, i) in row.body.iter().enumerate().filter(|(lane, _)| row.own[*lane]) {
+        k.r[*i] = M3::rows(single(&r0, lane), single(&r1, lane), single(&r2, lane));
+        (k.p[*i], k.w[*i], k.v[*i]) = (single(&f.p, lane), single(&f.w, lane), single(&f.v, lane));
     }
 }

@@ -152,7 +152,7 @@ fn solve<const HYBRID: bool>(
             let tau = if HYBRID { X::from_numbers(step.v.map(|v| ws.dofs[v].tau)) } else { pick(tau, &step.v) };
             given[s] = revolute(&k, step.p, &kin[s], speed, (&mut dof[s], tau));
         } else {
-            (given[s], dof[s]) = loaded(ws, step, (k, &kin[s]), speed);
+            loaded(ws, step, (k, &kin[s]), speed, (&mut given[s], &mut dof[s]));
         }
         if HYBRID {
             export_dof(ws, step, &dof[s]);
@@ -224,7 +224,13 @@ fn motion(place: Place, alone: &[Kin<f64>], kin: &[Kin<X>]) -> [f64; 6] {
 /// Bodies of which some have more than a torque on their joints: with a diagonal, or locked. The others keep the bits of
 /// [`revolute`].
 #[inline(always)]
-fn loaded(ws: &Workspace<f64>, step: &Step, (mut k, kin): (Acc<X>, &Kin<X>), speed: X) -> (Acc<X>, Dof<X>) {
+fn loaded(
+    ws: &Workspace<f64>,
+    step: &Step,
+    (mut k, kin): (Acc<X>, &Kin<X>),
+    speed: X,
+    (given, dof): (&mut Acc<X>, &mut Dof<X>),
+) {
     let input = step.v.map(|v| ws.dofs[v]);
     let lanes = DofIn {
         tau: X::from_numbers(input.map(|d| d.tau)),
@@ -233,17 +239,22 @@ fn loaded(ws: &Workspace<f64>, step: &Step, (mut k, kin): (Acc<X>, &Kin<X>), spe
         acceleration: X::from_numbers(input.map(|d| d.acceleration)),
         plain: false,
     };
-    let (mut plain_dof, mut dof) = (Dof::default(), Dof::default());
+    if !input.iter().any(|d| d.plain) {
+        eliminate_axis(&mut k, axis_z(), dof, &lanes);
+        k.push(turning_bias(speed, (kin.w, kin.v)));
+        *given = k.to_parent(&kin.r, step.p);
+        return;
+    }
+    let mut plain_dof = Dof::default();
     let plain = revolute(&k, step.p, kin, speed, (&mut plain_dof, lanes.tau));
-    eliminate_axis(&mut k, axis_z(), &mut dof, &lanes);
+    eliminate_axis(&mut k, axis_z(), dof, &lanes);
     k.push(turning_bias(speed, (kin.w, kin.v)));
-    let mut given = k.to_parent(&kin.r, step.p);
+    *given = k.to_parent(&kin.r, step.p);
     for lane in (0..LANES).filter(|lane| input[*lane].plain) {
-        let acc = rows_mut(&mut given).into_iter().zip(rows(&plain));
-        let dof = dof_rows_mut(&mut dof).into_iter().zip(dof_rows(&plain_dof));
+        let acc = rows_mut(given).into_iter().zip(rows(&plain));
+        let dof = dof_rows_mut(dof).into_iter().zip(dof_rows(&plain_dof));
         acc.chain(dof).for_each(|(to, from)| to.numbers_mut()[lane] = from.numbers()[lane]);
     }
-    (given, dof)
 }
 
 /// Adds what one body hands on, to one lane.
