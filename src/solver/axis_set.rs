@@ -10,7 +10,6 @@
 
 use super::between::Between;
 use super::books::Books;
-use super::contacts::Contacts;
 use super::contested::Contest;
 use super::couplings::Couplings;
 use super::law::{FRICTION, Law};
@@ -173,38 +172,40 @@ impl AxisSet {
             if self.rests(i) {
                 self.between[i].on = false;
                 self.pushes |= self.laws[i].push != 0.0;
-                continue;
+            } else if !self.prepare_between(i, start, effects) {
+                self.prepare_axis(m, (i, axis), start, effects);
             }
-            if self.prepare_between(i, start, effects) {
-                continue;
-            }
-            let (q, v) = self.axis_state(m, axis, start.state);
-            self.speed[i] = v;
-            if effects.limits {
-                self.books.watch_stop(axis, q);
-            }
-            self.rotor[i] = self.books.rotor(i, effects);
-            let input = AxisInput {
-                axis,
-                limits: &self.books.drives[i],
-                command: start.commands[i],
-                q,
-                stuck: self.memory[i] & FRICTION != 0 || v == 0.0,
-                brakes: self.brakes[i],
-            };
-            if axis.is_graspable(&self.rates) {
-                self.laws[i].set(&input, effects, (start.h, start.whole))
-            } else {
-                self.laws[i].clear()
-            }
-            self.pushes |= self.laws[i].push != 0.0;
-            self.place[i] = self.laws[i].guess(v, self.memory[i]);
-            self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }
         (self.mean, self.sweeps) = (start.mean, start.sweeps);
         self.start_couplings(m, start);
         self.set_weights(m);
         at_pole
+    }
+
+    /// The law of one axis, and the first guess of its place.
+    fn prepare_axis(&mut self, m: &Model, (i, axis): (usize, &Axis), start: &StepStart, effects: Effects) {
+        let (q, v) = self.axis_state(m, axis, start.state);
+        self.speed[i] = v;
+        if effects.limits {
+            self.books.watch_stop(axis, q);
+        }
+        self.rotor[i] = self.books.rotor(i, effects);
+        let input = AxisInput {
+            axis,
+            limits: &self.books.drives[i],
+            command: start.commands[i],
+            q,
+            stuck: self.memory[i] & FRICTION != 0 || v == 0.0,
+            brakes: self.brakes[i],
+        };
+        if axis.is_graspable(&self.rates) {
+            self.laws[i].set(&input, effects, (start.h, start.whole))
+        } else {
+            self.laws[i].clear()
+        }
+        self.pushes |= self.laws[i].push != 0.0;
+        self.place[i] = self.laws[i].guess(v, self.memory[i]);
+        self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
     }
 
     /// Is the tree of an axis out of the computation?
@@ -346,52 +347,6 @@ impl AxisSet {
     /// True if no axis has been moved to another part of its law in the last pass.
     pub fn is_calm(&self) -> bool {
         self.best == usize::MAX
-    }
-
-    /// Do contacts make the step from its start, or to this state, anything but smooth?
-    pub fn collides(&mut self, m: &Model, end: Option<StateRef>) -> bool {
-        let Some(contacts) = self.contacts_mut() else { return false };
-        match end {
-            None => contacts.touching(),
-            Some(s) => contacts.overlap(m, s.q, s.v),
-        }
-    }
-
-    /// The same, to be changed.
-    pub fn contacts_mut(&mut self) -> Option<&mut Contacts> {
-        self.couplings.as_mut().and_then(|c| c.contacts.as_mut())
-    }
-
-    /// Tells the contacts which bodies rest.
-    pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
-        if let Some(contacts) = self.contacts_mut() {
-            contacts.rest(rests);
-        }
-    }
-
-    /// Did a contact carry something in the last pass?
-    pub fn touches(&self) -> bool {
-        self.contacts().is_some_and(Contacts::carries)
-    }
-
-    /// What the contacts' rows were left with in the last pass, m/s.
-    pub fn residual(&self) -> f64 {
-        self.contacts().map_or(0.0, |c| if c.is_empty() { 0.0 } else { c.residual })
-    }
-
-    /// Passes so far whose bounces were made smaller.
-    pub fn tempered(&self) -> u64 {
-        self.contacts().map_or(0, |c| c.tempered)
-    }
-
-    /// All contacts, if anything can touch.
-    pub fn contacts(&self) -> Option<&Contacts> {
-        self.couplings.as_ref().and_then(|c| c.contacts())
-    }
-
-    /// May bodies that are near pass through each other within the step that was prepared?
-    pub fn is_fast(&self) -> bool {
-        self.contacts().is_some_and(|c| c.fastest() > 1.0)
     }
 
     /// Gradients of the angles at these angles; true if a 3DOF group is at its pole.

@@ -6,7 +6,9 @@
 //! the velocities plus `−u_t·e / |x_t|`. Discs at their rim follow the normal impulse likewise.
 
 use super::dense::{Cholesky, Lu, dot};
-use super::rows::{FINISH_ROWS, Inner, Kind, NEARLY, Rows};
+use super::inner::Inner;
+use super::rows::{FINISH_ROWS, Kind, NEARLY, Rows};
+use super::way::{Way, length, shorten};
 use crate::math::{Lane, Lanes4};
 
 /// Linearisations in one finish of many rows.
@@ -375,34 +377,5 @@ impl Rows {
                 }
             }
         }
-    }
-}
-
-/// Within a disc of this radius.
-fn shorten(rows: &mut [super::rows::Row], radius: f64) {
-    let size = rows.iter().map(|r| r.impulse * r.impulse).sum::<f64>().sqrt();
-    if size > radius {
-        rows.iter_mut().for_each(|r| r.impulse *= radius / size);
-    }
-}
-
-fn length(x: [f64; 2]) -> f64 {
-    (x[0] * x[0] + x[1] * x[1]).sqrt()
-}
-
-/// Where an impulse of two rows is in its disc.
-enum Way {
-    Inside,
-    Rim { direction: [f64; 2], stiffness: f64 },
-}
-
-impl Way {
-    fn of(x: [f64; 2], u: [f64; 2], step: f64, radius: f64) -> Self {
-        let to = [x[0] - step * u[0], x[1] - step * u[1]];
-        let size = length(to);
-        if size <= radius {
-            return Self::Inside;
-        }
-        Self::Rim { direction: to.map(|t| t / size), stiffness: (size - radius) / (radius * step) }
     }
 }

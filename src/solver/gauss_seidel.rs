@@ -1,6 +1,7 @@
 //! Projected Gauss–Seidel over blocks, in factor space: a block sees all others through w alone.
 
-use super::rows::{Block, CHUNK, Inner, Kind, Row, Rows, within_disc};
+use super::inner::{Inner, within_disc};
+use super::rows::{Block, CHUNK, Kind, Row, Rows};
 
 /// What a visit reads and writes besides its block.
 struct Field<'a> {

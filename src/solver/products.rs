@@ -66,10 +66,11 @@ impl Rows {
     fn couple<L: Lane, const P: usize, const Q: usize>(&self, b: &Block, c: &Block, a: &mut [f64]) {
         let n = self.rows.len();
         let (ids, others) = (&self.ids[b.ids.clone()], &self.ids[c.ids.clone()]);
-        let (mut y, mut z): ([&[[f64; CHUNK]]; P], [&[[f64; CHUNK]]; Q]) = ([&[]; P], [&[]; Q]);
+        let mut y: [&[[f64; CHUNK]]; P] = [&[]; P];
         for (p, y) in y.iter_mut().enumerate() {
             *y = &self.numbers(b, p).as_chunks().0[..ids.len()];
         }
+        let mut z: [&[[f64; CHUNK]]; Q] = [&[]; Q];
         for (q, z) in z.iter_mut().enumerate() {
             *z = &self.numbers(c, q).as_chunks().0[..others.len()];
         }

@@ -1,14 +1,9 @@
 //! Constraint rows in factor space: each holds its response y; its velocity is `bias + y·w`, its impulse x moves w by y x.
 
-use super::cone::{ConeBlock, Plane, disc};
+use super::inner::Inner;
 
 /// Numbers in a chunk of w.
 pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
-/// A visit of a block stays near what it had before, by this share of its trace: that moves no solution, and a block that is
-/// held in some direction has one.
-const NEAR: f64 = 1e-9;
-/// A contact whose normal moves by less than this share of its tangents is held.
-const DEAD: f64 = 1e-12;
 /// A residual within this many times the wanted one is not worth another try that may not help.
 pub(super) const NEARLY: f64 = 1e3;
 /// More rows than this are left to the iteration: the direct finish costs their cube.
@@ -68,16 +63,6 @@ pub(super) struct Block {
     pub inner: Inner,
     /// Of a contact that slides: velocity against impulse, from the last visit.
     pub slip: f64,
-}
-
-/// The block's own part of `Y Yᵀ + R`.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Inner {
-    /// Nothing moves when it pushes: it takes no part.
-    Off,
-    Single(f64),
-    Pair(Plane, f64),
-    Cone(ConeBlock),
 }
 
 /// What a solve came to.
@@ -187,45 +172,6 @@ impl Rows {
         &self.rows
     }
 
-    /// Takes the responses and softnesses of a block as they are now; it takes part from here on, unless nothing moves
-    /// when it pushes.
-    pub fn seal(&mut self, block: usize) {
-        self.blocks[block].inner = self.inner(block);
-    }
-
-    fn inner(&self, block: usize) -> Inner {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has just been asked for it.
-            return unsafe { self.inner_wide(block) };
-        }
-        self.inner_any(block)
-    }
-
-    /// [`Rows::inner_any`] in wider registers: the same operations, the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn inner_wide(&self, block: usize) -> Inner {
-        self.inner_any(block)
-    }
-
-    #[inline(always)]
-    fn inner_any(&self, block: usize) -> Inner {
-        let b = &self.blocks[block];
-        match b.rows {
-            1 => single(self.own(b, 0, 0)),
-            2 => pair([self.own(b, 0, 0), self.own(b, 0, 1), self.own(b, 1, 1)]),
-            _ => cone([
-                self.own(b, 0, 0),
-                self.own(b, 0, 1),
-                self.own(b, 0, 2),
-                self.own(b, 1, 1),
-                self.own(b, 1, 2),
-                self.own(b, 2, 2),
-            ]),
-        }
-    }
-
     /// Takes a block out, and its impulses.
     pub fn switch_off(&mut self, block: usize) {
         let b = &mut self.blocks[block];
@@ -233,14 +179,6 @@ impl Rows {
         for row in &mut self.rows[b.first..b.first + b.rows] {
             row.impulse = 0.0;
         }
-    }
-
-    #[inline(always)]
-    fn own(&self, b: &Block, i: usize, k: usize) -> f64 {
-        let length = b.ids.len() * CHUNK;
-        let y = |n: usize| &self.values[b.values + n * length..b.values + (n + 1) * length];
-        let softness = if i == k { self.rows[b.first + i].softness } else { 0.0 };
-        dot(y(i), y(k)) + softness
     }
 
     /// Trace of a block's own part of `Y Yᵀ + R`.
@@ -399,43 +337,5 @@ impl Rows {
 impl Block {
     pub fn is_off(&self) -> bool {
         matches!(self.inner, Inner::Off)
-    }
-}
-
-fn single(h: f64) -> Inner {
-    if h > 0.0 { Inner::Single(h) } else { Inner::Off }
-}
-
-fn pair([a, b, d]: [f64; 3]) -> Inner {
-    let (trace, more) = (a + d, NEAR * (a + d));
-    if trace > 0.0 { Inner::Pair(Plane::new(a + more, b, d + more), trace) } else { Inner::Off }
-}
-
-/// A contact that gives way along its normal takes part, also where it is held along a tangent.
-fn cone(h: [f64; 6]) -> Inner {
-    let trace = h[0] + h[3] + h[5];
-    let more = NEAR * trace;
-    let near = [h[0] + more, h[1], h[2], h[3] + more, h[4], h[5] + more];
-    if h[0] > DEAD * trace { Inner::Cone(ConeBlock::new(near)) } else { Inner::Off }
-}
-
-/// Of two rows over the same chunks.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = [0.0; CHUNK];
-    for (a, b) in a.chunks_exact(CHUNK).zip(b.chunks_exact(CHUNK)) {
-        for k in 0..CHUNK {
-            sum[k] += a[k] * b[k];
-        }
-    }
-    (sum[0] + sum[1]) + (sum[2] + sum[3])
-}
-
-/// A disc of a pair of rows, or ± the radius of one.
-pub(super) fn within_disc(inner: &Inner, r: [f64; 2], radius: f64) -> [f64; 2] {
-    match inner {
-        Inner::Pair(plane, _) => disc(plane, r, radius),
-        Inner::Single(h) => [(-r[0] / h).min(radius).max(-radius), 0.0],
-        _ => [0.0; 2],
     }
 }
