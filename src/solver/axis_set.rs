@@ -214,6 +214,7 @@ impl AxisSet {
         self.resting.get(axis) == Some(&true)
     }
 
+    #[inline(always)]
     pub(super) fn axis_state(&self, m: &Model, axis: &Axis, s: StateRef) -> (f64, f64) {
         match axis.slot {
             AxisSlot::Scalar { q, v } => (s.q[q], s.v[v]),
@@ -356,6 +357,7 @@ impl AxisSet {
 
     /// Rate of an axis for rates of the velocity coordinates: its speed from velocities, its acceleration from
     /// accelerations (of an angle: with its gradient held).
+    #[inline(always)]
     pub(super) fn axis_rate(&self, m: &Model, axis: &Axis, rates: &[f64]) -> f64 {
         match axis.slot {
             AxisSlot::Scalar { v, .. } => rates[v],

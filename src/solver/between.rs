@@ -56,9 +56,12 @@ impl AxisSet {
     #[inline(always)]
     pub(super) fn prepare_between(&mut self, i: usize, start: &StepStart, effects: Effects) -> bool {
         let b = &mut self.between[i];
+        if !b.may {
+            return false;
+        }
         b.on = false;
         let law = &mut self.laws[i];
-        if !law.plain || !b.may || self.memory[i] != 0 || !is_idle(&start.commands[i], &self.books.drives[i]) {
+        if !law.plain || self.memory[i] != 0 || !is_idle(&start.commands[i], &self.books.drives[i]) {
             return false;
         }
         let (q, v) = (start.state.q[b.at.0], start.state.v[b.at.1]);
@@ -139,14 +142,15 @@ impl Law {
     }
 
     /// Two hard stops or none, and nothing but damping.
+    #[inline(always)]
     pub(super) fn is_plain(&self) -> bool {
-        let still = self.drive == DriveLaw::Idle && self.friction == 0.0 && self.stood == 0.0;
-        let stops = match self.knots[..self.count] {
+        let stops = match &self.knots[..self.count] {
             [] => true,
             [low, high] => low.kinds == LOWER | WALL_LEFT && high.kinds == UPPER | WALL_RIGHT,
             _ => false,
         };
-        still && stops && self.push == 0.0
+        let idle = matches!(self.drive, DriveLaw::Idle);
+        stops && idle && self.friction == 0.0 && self.stood == 0.0 && self.push == 0.0
     }
 
     /// Takes over the gaps to hard stops of a law that is plain; the speeds that reach them. `None` where it touches one or is beyond.
@@ -244,6 +248,6 @@ mod tests {
         assert!(!made(&|a| a.stop = Softness { erp: 0.2, cfm: 1e-3 }));
         assert!(!made(&|a| a.drive.static_resistance = 0.1));
         assert!(!made(&|a| a.drive.dynamic_resistance = 0.1));
-        assert!(!made(&|a| a.lower = 0.3));
+        assert!(!made(&|a| (a.lower, a.stop) = (0.3, Softness { erp: 0.2, cfm: 0.0 })));
     }
 }

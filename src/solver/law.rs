@@ -192,6 +192,7 @@ impl Law {
         }
     }
 
+    #[inline(always)]
     fn insert(&mut self, knot: Knot) {
         let mut at = 0;
         for k in &mut self.knots[..self.count] {
@@ -281,12 +282,15 @@ impl Law {
     #[inline]
     pub(super) fn guess(&self, v: f64, memory: u8) -> usize {
         let knots = &self.knots[..self.count];
-        let riser = |k: &usize| self.is_riser(*k);
-        if let Some(k) = (0..self.count).filter(riser).find(|k| knots[*k].kinds & memory != 0) {
-            return self.within_walls(2 * k + 1);
+        for (k, knot) in knots.iter().enumerate() {
+            if knot.kinds & memory != 0 && self.is_riser(k) {
+                return self.within_walls(2 * k + 1);
+            }
         }
-        if let Some(k) = (0..self.count).filter(riser).find(|k| knots[*k].speed == v) {
-            return self.within_walls(2 * k + 1);
+        for (k, knot) in knots.iter().enumerate() {
+            if knot.speed == v && self.is_riser(k) {
+                return self.within_walls(2 * k + 1);
+            }
         }
         // At a kink from rest, the side to which the drive pushes.
         let behind = |k: &&Knot| k.speed < v || (k.speed == v && k.steeper > 0.0);
