@@ -3,8 +3,8 @@
 
 mod support;
 
-use realnoid::dynamics::{AbaBatch, CHUNK, DofIn, LaneKind, Limbs, Push, Response};
-use realnoid::dynamics::{Kinematics, Workspace, aba, aba_fused, aba_hybrid, aba_limbs, kinematics};
+use realnoid::dynamics::{AbaBatch, CHUNK, DofIn, Kinematics, LaneKind, Limbs, Push, Response};
+use realnoid::dynamics::{Workspace, aba, aba_fused, aba_hybrid, aba_limbs, kinematics, kinematics_of};
 use realnoid::math::{M3, V3};
 use realnoid::model::{JointType, Model};
 use support::{ALL, Random, state, tree};
@@ -278,5 +278,44 @@ fn a_base_that_is_moved_is_seen() {
             b.tree_r = realnoid::math::M3::from(*turned.to_rotation_matrix().matrix()).mm(&b.tree_r);
             b.tree_p.x += 0.3;
         }
+    }
+}
+
+/// Frames and velocities of the whole robot, limbs side by side where that pays, and of each body after its parent.
+#[test]
+fn frames_of_limbs_have_the_bits_of_one_after_the_other() {
+    let mut rng = Random(91);
+    let mut all = branched();
+    all.extend(models());
+    for (n, m) in all.iter().enumerate() {
+        let bodies: Vec<usize> = (1..m.bodies.len()).collect();
+        let (mut together, mut in_turn) = (Kinematics::new(m), Kinematics::new(m));
+        for (q, v, _) in robots(m, 5, &mut rng) {
+            kinematics(m, &mut together, &q, &v);
+            kinematics_of(m, &mut in_turn, (&q, &v), &bodies);
+            for i in 0..m.bodies.len() {
+                let all = |k: &Kinematics| {
+                    let [a, b, c] = k.r[i].r;
+                    let v = [a, b, c, k.p[i], k.w[i], k.v[i]];
+                    bits(&v.iter().flat_map(|v| [v.x, v.y, v.z]).collect::<Vec<f64>>())
+                };
+                assert_eq!(all(&together), all(&in_turn), "model {n}, body {i}");
+            }
+        }
+    }
+}
+
+/// What stands on the world may be moved while the room that was made for the model stays.
+#[test]
+fn frames_follow_a_base_that_is_moved() {
+    let mut rng = Random(92);
+    for mut m in branched() {
+        let (mut together, mut in_turn) = (Kinematics::new(&m), Kinematics::new(&m));
+        let moved: Vec<usize> = (1..m.bodies.len()).filter(|i| m.bodies[*i].parent == 0).collect();
+        moved.iter().for_each(|i| m.bodies[*i].tree_p = V3::new(0.3, -1.2, 2.5));
+        let (q, v) = state(&m, &mut rng, 2.0);
+        kinematics(&m, &mut together, &q, &v);
+        kinematics_of(&m, &mut in_turn, (&q, &v), &(1..m.bodies.len()).collect::<Vec<usize>>());
+        assert!(together.p == in_turn.p && together.r == in_turn.r);
     }
 }

@@ -35,17 +35,15 @@ pub fn exponential_step(m: &Model, q: &mut [f64], v: &mut [f64], vdot: &[f64], h
     for b in &m.bodies[1..] {
         match b.joint {
             JointType::Floating => floating_step(&mut q[b.q..b.q + 7], &mut v[b.v..b.v + 6], &vdot[b.v..b.v + 6], h),
-            joint => {
-                for k in b.v..b.v + joint.nv() {
-                    v[k] += h * vdot[k];
-                }
-                if joint == JointType::Spherical {
-                    let w = V3::new(v[b.v], v[b.v + 1], v[b.v + 2]);
-                    turn(&mut q[b.q..b.q + 4], w * h);
-                } else {
-                    for k in 0..joint.nq() {
-                        q[b.q + k] += h * v[b.v + k];
-                    }
+            JointType::Spherical => {
+                (b.v..b.v + 3).for_each(|k| v[k] += h * vdot[k]);
+                let w = V3::new(v[b.v], v[b.v + 1], v[b.v + 2]);
+                turn(&mut q[b.q..b.q + 4], w * h);
+            }
+            JointType::Revolute | JointType::Prismatic => scalar_step(&mut q[b.q], &mut v[b.v], vdot[b.v], h),
+            JointType::Universal => {
+                for k in 0..2 {
+                    scalar_step(&mut q[b.q + k], &mut v[b.v + k], vdot[b.v + k], h);
                 }
             }
         }
@@ -71,6 +69,12 @@ pub fn move_coordinates(m: &Model, from: &[f64], u: &[f64], h: f64, to: &mut [f6
             _ => q.iter_mut().zip(u).for_each(|(x, u)| *x += h * u),
         }
     }
+}
+
+#[inline(always)]
+fn scalar_step(q: &mut f64, v: &mut f64, vdot: f64, h: f64) {
+    *v += h * vdot;
+    *q += h * *v;
 }
 
 fn floating_step(q: &mut [f64], v: &mut [f64], vdot: &[f64], h: f64) {

@@ -2,10 +2,12 @@
 
 use super::articulated::Spatial;
 use super::joint::{joint_transform, joint_velocity, turned_x, turned_z};
+use super::limbs::Frames;
 use super::turn::{Planar, Turn};
 use crate::math::{M3, Mat3, Pose, Quat, Real, Twist, V3, Vec3};
 use crate::model::{Along, JointType, LinkFrame, Model};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
+use std::sync::Arc;
 
 /// Frames and velocities of all bodies. Makes its memory once.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +20,8 @@ pub struct Kinematics {
     pub w: Vec<V3<f64>>,
     /// Per body: velocity of its origin along its own axes, m/s.
     pub v: Vec<V3<f64>>,
+    /// How [`kinematics`] computes limbs side by side, if that pays.
+    limbs: Option<Arc<Frames>>,
 }
 
 impl Kinematics {
@@ -29,6 +33,7 @@ impl Kinematics {
             p: vec![V3::default(); n],
             w: vec![V3::default(); n],
             v: vec![V3::default(); n],
+            limbs: Frames::new(model).map(Arc::new),
         }
     }
 
@@ -56,7 +61,13 @@ impl Kinematics {
 
 /// Fills `k` from the state `q` (nq), `v` (nv).
 pub fn kinematics(m: &Model, k: &mut Kinematics, q: &[f64], v: &[f64]) {
-    (1..m.bodies.len()).for_each(|i| one(m, k, (q, v), i));
+    match k.limbs.take() {
+        None => (1..m.bodies.len()).for_each(|i| one(m, k, (q, v), i)),
+        Some(limbs) => {
+            limbs.fill(m, k, (q, v), |k, i| one(m, k, (q, v), i));
+            k.limbs = Some(limbs);
+        }
+    }
 }
 
 /// As [`kinematics`], of these bodies only: ascending, with all that carry them.

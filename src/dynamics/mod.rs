@@ -25,6 +25,7 @@ mod limbs;
 mod response;
 mod rnea;
 mod turn;
+mod velocities;
 
 pub use aba::{Dof, Workspace, aba, aba_fused, aba_hybrid};
 pub use ball::{BallIn, BallLock};
@@ -43,6 +44,7 @@ pub use layout::{CHUNK, Layout};
 pub use limbs::{Limbs, aba_limbs};
 pub use response::{Mobility, Push, Response};
 pub use rnea::rnea;
+pub use velocities::velocities_of;
 
 /// Inputs of one velocity coordinate to the hybrid dynamics: a free one gets a torque, a locked one an acceleration.
 #[derive(Clone, Copy, Debug)]

@@ -81,7 +81,7 @@ impl Rbx {
         self.axes.finish(m, &self.ws, &self.state.q, (s.h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, at.v, (s.h, &self.qdd));
         self.axes.add_damping_work(m, &mut self.ws, (at.q, at.v), (s.h, &self.qdd));
-        self.axes.book_contacts(m, (at.q, at.v, &self.qdd), (s.h, self.whole_step));
+        self.axes.book_contacts((m, &self.ws), (at.q, at.v, &self.qdd), (s.h, self.whole_step));
         let lifted = self.axes.lift(m, &self.ws, (at.q, at.v, &self.qdd), s.h, &mut self.lift);
         exponential_step(m, &mut self.state.q, &mut self.state.v, &self.qdd, s.h);
         if lifted {

@@ -279,7 +279,7 @@ impl Rbx {
         self.axes.finish(m, &self.ws, &mid.middle.q, (h, &self.qdd));
         self.axes.add_soft_work(m, &self.ws, &mid.start.v, (h, &self.qdd));
         self.axes.add_damping_work(m, &mut self.ws, (&mid.middle.q, &mid.start.v), (h, &self.qdd));
-        self.axes.book_contacts(m, (&mid.middle.q, &mid.start.v, &self.qdd), (h, self.whole_step));
+        self.axes.book_contacts((m, &self.ws), (&mid.middle.q, &mid.start.v, &self.qdd), (h, self.whole_step));
         for (v, (v0, a)) in self.state.v.iter_mut().zip(mid.start.v.iter().zip(&self.qdd)) {
             *v = v0 + h * a;
         }

@@ -20,6 +20,24 @@ pub(super) struct Paid {
     /// Of states that are not shown.
     kinematics: Kinematics,
     accounts: Vec<Account>,
+    ended: Ended,
+}
+
+/// How the last piece ended: mostly the next one begins there.
+#[derive(Clone, Debug)]
+struct Ended {
+    state: State,
+    gravity: [f64; 3],
+    /// Per body.
+    energies: Vec<Energy>,
+    known: bool,
+}
+
+impl Ended {
+    /// Are these the energies of this state?
+    fn is(&self, state: &State, gravity: [f64; 3]) -> bool {
+        self.known && self.gravity == gravity && self.state.q == state.q && self.state.v == state.v
+    }
 }
 
 /// Of one tree, or of all of an island, J.
@@ -39,7 +57,14 @@ impl Paid {
     pub fn new(m: &Model) -> Self {
         let forest = Forest::of(m);
         let accounts = vec![Account::default(); forest.count];
-        Self { islands: Islands::new(forest.count), kinematics: Kinematics::new(m), accounts, forest }
+        let energies = vec![Energy::default(); m.bodies.len()];
+        let ended = Ended { state: State::initial(m), gravity: [0.0; 3], energies, known: false };
+        Self { islands: Islands::new(forest.count), kinematics: Kinematics::new(m), accounts, forest, ended }
+    }
+
+    /// The model has moved.
+    pub fn forget(&mut self) {
+        self.ended.known = false;
     }
 }
 
@@ -113,16 +138,21 @@ impl Rbx {
 
     /// Adds up the accounts of each island in its first tree, and finds its share.
     fn balance(&self, m: &Model, paid: &mut Paid, start: &State, gravity: [f64; 3]) {
-        let Paid { forest, islands, accounts, .. } = paid;
+        let Paid { forest, islands, accounts, ended, .. } = paid;
         let Some(contacts) = self.axes.contacts() else { return };
         let add = |to: &mut Energy, e: Energy| {
             (to.kinetic, to.potential) = (to.kinetic + e.kinetic, to.potential + e.potential)
         };
+        let known = ended.is(start, gravity);
         for body in 1..m.bodies.len() {
             let account = &mut accounts[islands.of(forest.of_body[body])];
-            add(&mut account.before, body_energy(m, contacts.start(), gravity, body));
-            add(&mut account.after, body_energy(m, contacts.end(), gravity, body));
+            let energy = &mut ended.energies[body];
+            add(&mut account.before, if known { *energy } else { body_energy(m, contacts.start(), gravity, body) });
+            *energy = body_energy(m, contacts.end(), gravity, body);
+            add(&mut account.after, *energy);
         }
+        ended.state.copy_from(&self.state);
+        (ended.gravity, ended.known) = (gravity, true);
         let softs = m.softs.iter().map(|s| m.body_of(s.v).map_or(forest.count, |b| forest.of_body[b]));
         for (tree, by) in forest.of_axis.iter().copied().chain(softs).zip(self.axes.paid_by()) {
             if tree < forest.count {

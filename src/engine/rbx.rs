@@ -344,6 +344,9 @@ impl Rbx {
         if let Some(contacts) = self.axes.contacts_mut() {
             contacts.forget();
         }
+        if let Some(paid) = &mut self.paid {
+            paid.forget();
+        }
     }
 
     /// False, with the state as before, if the step is not smooth.

@@ -21,6 +21,14 @@ pub unsafe trait Lane: Real {
         unsafe { std::slice::from_raw_parts(std::ptr::from_ref(self).cast(), Self::COUNT) }
     }
 
+    /// Of as many numbers as there are lanes.
+    #[inline(always)]
+    fn read(x: &[f64]) -> Self {
+        let mut lanes = Self::of(0.0);
+        lanes.numbers_mut().copy_from_slice(x);
+        lanes
+    }
+
     /// The same, to write.
     #[inline(always)]
     fn numbers_mut(&mut self) -> &mut [f64] {

@@ -8,8 +8,8 @@
 //! A sliding axis moves with the mean of its speeds at the start and the end of the step, of second order. One that stands,
 //! or whose slope is stiff against the step, moves with the speed at the end: of first order, but it cannot ring.
 
+use super::between::Between;
 use super::books::Books;
-use super::contacts::Contacts;
 use super::contested::Contest;
 use super::couplings::Couplings;
 use super::law::{FRICTION, Law};
@@ -56,15 +56,21 @@ pub struct AxisSet {
     /// The drives, and what became of them.
     pub books: Books,
     pub(super) laws: Vec<Law>,
+    /// Effects that the laws were made with.
+    effects: Effects,
+    /// Axes whose laws need not be made anew.
+    pub(super) between: Vec<Between>,
+    /// Is there an axis that is put back into its range after the step?
+    pub(super) pushes: bool,
     /// Per axis: 2 j on segment j, 2 k + 1 on riser k.
     pub(super) place: Vec<usize>,
     /// Per axis: it moves with its speed at the end of the step.
     pub(super) at_end: Vec<bool>,
     /// Per axis: its slope was stiff against the last step.
-    stiff: Vec<bool>,
+    pub(super) stiff: Vec<bool>,
     /// Kinds of the riser an axis stood on at the end of the last step; 0 = it slid.
     pub(super) memory: Vec<u8>,
-    moves: Vec<isize>,
+    pub(super) moves: Vec<isize>,
     /// Per axis of a 3DOF group: which of its group's locks is its own, while it is locked.
     pub(super) lock: Vec<usize>,
     pub(super) rates: Vec<EulerRates>,
@@ -109,6 +115,9 @@ impl AxisSet {
         Self {
             books: Books::new(model),
             laws: vec![Law::default(); n],
+            effects: Effects::NONE,
+            between: Between::all(model),
+            pushes: false,
             place: vec![0; n],
             at_end: vec![true; n],
             stiff: vec![false; n],
@@ -154,36 +163,49 @@ impl AxisSet {
         (self.best, self.patience) = (usize::MAX, PATIENCE);
         (self.passes, self.h) = (0, start.h);
         self.contests.fill(Contest::default());
+        if self.effects != effects {
+            self.laws.iter_mut().for_each(|law| law.plain = false);
+            self.effects = effects;
+        }
+        self.pushes = false;
         for (i, axis) in m.axes.iter().enumerate() {
             if self.rests(i) {
-                continue;
+                self.between[i].on = false;
+                self.pushes |= self.laws[i].push != 0.0;
+            } else if !self.prepare_between(i, start, effects) {
+                self.prepare_axis(m, (i, axis), start, effects);
             }
-            let (q, v) = self.axis_state(m, axis, start.state);
-            self.speed[i] = v;
-            if effects.limits {
-                self.books.watch_stop(axis, q);
-            }
-            self.rotor[i] = self.books.rotor(i, effects);
-            let input = AxisInput {
-                axis,
-                limits: &self.books.drives[i],
-                command: start.commands[i],
-                q,
-                stuck: self.memory[i] & FRICTION != 0 || v == 0.0,
-                brakes: self.brakes[i],
-            };
-            if axis.is_graspable(&self.rates) {
-                self.laws[i].set(&input, effects, (start.h, start.whole))
-            } else {
-                self.laws[i].clear()
-            }
-            self.place[i] = self.laws[i].guess(v, self.memory[i]);
-            self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
         }
         (self.mean, self.sweeps) = (start.mean, start.sweeps);
         self.start_couplings(m, start);
         self.set_weights(m);
         at_pole
+    }
+
+    /// The law of one axis, and the first guess of its place.
+    fn prepare_axis(&mut self, m: &Model, (i, axis): (usize, &Axis), start: &StepStart, effects: Effects) {
+        let (q, v) = self.axis_state(m, axis, start.state);
+        self.speed[i] = v;
+        if effects.limits {
+            self.books.watch_stop(axis, q);
+        }
+        self.rotor[i] = self.books.rotor(i, effects);
+        let input = AxisInput {
+            axis,
+            limits: &self.books.drives[i],
+            command: start.commands[i],
+            q,
+            stuck: self.memory[i] & FRICTION != 0 || v == 0.0,
+            brakes: self.brakes[i],
+        };
+        if axis.is_graspable(&self.rates) {
+            self.laws[i].set(&input, effects, (start.h, start.whole))
+        } else {
+            self.laws[i].clear()
+        }
+        self.pushes |= self.laws[i].push != 0.0;
+        self.place[i] = self.laws[i].guess(v, self.memory[i]);
+        self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
     }
 
     /// Is the tree of an axis out of the computation?
@@ -192,6 +214,7 @@ impl AxisSet {
         self.resting.get(axis) == Some(&true)
     }
 
+    #[inline(always)]
     pub(super) fn axis_state(&self, m: &Model, axis: &Axis, s: StateRef) -> (f64, f64) {
         match axis.slot {
             AxisSlot::Scalar { q, v } => (s.q[q], s.v[v]),
@@ -249,6 +272,9 @@ impl AxisSet {
     fn misfits(&mut self, m: &Model, ws: &Workspace<f64>, (h, qdd): (f64, &[f64])) -> usize {
         let (mut count, mut breaking) = (0, 0);
         for (i, axis) in m.axes.iter().enumerate() {
+            if self.stays_between(ws, i, (h, qdd)) {
+                continue;
+            }
             self.moves[i] = 0;
             if self.rests(i) {
                 continue;
@@ -324,52 +350,6 @@ impl AxisSet {
         self.best == usize::MAX
     }
 
-    /// Do contacts make the step from its start, or to this state, anything but smooth?
-    pub fn collides(&mut self, m: &Model, end: Option<StateRef>) -> bool {
-        let Some(contacts) = self.contacts_mut() else { return false };
-        match end {
-            None => contacts.touching(),
-            Some(s) => contacts.overlap(m, s.q, s.v),
-        }
-    }
-
-    /// The same, to be changed.
-    pub fn contacts_mut(&mut self) -> Option<&mut Contacts> {
-        self.couplings.as_mut().and_then(|c| c.contacts.as_mut())
-    }
-
-    /// Tells the contacts which bodies rest.
-    pub fn rest(&mut self, rests: impl Fn(usize) -> bool) {
-        if let Some(contacts) = self.contacts_mut() {
-            contacts.rest(rests);
-        }
-    }
-
-    /// Did a contact carry something in the last pass?
-    pub fn touches(&self) -> bool {
-        self.contacts().is_some_and(Contacts::carries)
-    }
-
-    /// What the contacts' rows were left with in the last pass, m/s.
-    pub fn residual(&self) -> f64 {
-        self.contacts().map_or(0.0, |c| if c.is_empty() { 0.0 } else { c.residual })
-    }
-
-    /// Passes so far whose bounces were made smaller.
-    pub fn tempered(&self) -> u64 {
-        self.contacts().map_or(0, |c| c.tempered)
-    }
-
-    /// All contacts, if anything can touch.
-    pub fn contacts(&self) -> Option<&Contacts> {
-        self.couplings.as_ref().and_then(|c| c.contacts())
-    }
-
-    /// May bodies that are near pass through each other within the step that was prepared?
-    pub fn is_fast(&self) -> bool {
-        self.contacts().is_some_and(|c| c.fastest() > 1.0)
-    }
-
     /// Gradients of the angles at these angles; true if a 3DOF group is at its pole.
     pub fn update_rates(&mut self, m: &Model, angles: &[[f64; 3]]) -> bool {
         m.write_rates(angles, &mut self.rates)
@@ -377,6 +357,7 @@ impl AxisSet {
 
     /// Rate of an axis for rates of the velocity coordinates: its speed from velocities, its acceleration from
     /// accelerations (of an angle: with its gradient held).
+    #[inline(always)]
     pub(super) fn axis_rate(&self, m: &Model, axis: &Axis, rates: &[f64]) -> f64 {
         match axis.slot {
             AxisSlot::Scalar { v, .. } => rates[v],

@@ -11,7 +11,7 @@ use self::point::{BodyColumns, Impulse, Point, axes};
 use super::lifts::{Lift, LiftKind};
 use super::rows::Rows;
 use crate::contact::{Detector, Touch};
-use crate::dynamics::{Kinematics, Posed, Response, kinematics, kinematics_of};
+use crate::dynamics::{Kinematics, Posed, Response, Workspace, kinematics, velocities_of};
 use crate::math::V3;
 use crate::model::{JointType, Model};
 
@@ -285,9 +285,15 @@ impl Contacts {
 
     /// Asks the rows for what is missing in a motion with these speeds (nv), so that nothing ends inside of something else. False
     /// if nothing is.
-    pub(super) fn aim_lift(&mut self, m: &Model, rows: &mut Rows, pass: &Pass, speeds: impl Fn(&mut [f64])) -> bool {
+    pub(super) fn aim_lift(
+        &mut self,
+        (m, ws): (&Model, &Workspace<f64>),
+        rows: &mut Rows,
+        pass: &Pass,
+        speeds: impl Fn(&mut [f64]),
+    ) -> bool {
         speeds(&mut self.v1);
-        kinematics_of(m, &mut self.end, (pass.q, &self.v1), &self.chain);
+        velocities_of(m, (ws, &self.middle), &mut self.end, (pass.q, &self.v1), &self.chain);
         let mut wanted = false;
         for point in self.points.iter_mut().filter(|p| p.is_live()) {
             point.lifts = false;
@@ -365,7 +371,9 @@ pub(super) fn end_velocities(m: &Model, pass: &Pass, qdd: &[f64], out: &mut [f64
 
 /// Velocity of side 1 against side 0 at a point, along the world's axes.
 fn approach(k: &Kinematics, touch: &Touch, point: V3<f64>) -> V3<f64> {
-    k.velocity_at(touch.bodies[1], point) - k.velocity_at(touch.bodies[0], point)
+    // The world stands still.
+    let of = |body: usize| if body == 0 { V3::default() } else { k.velocity_at(body, point) };
+    of(touch.bodies[1]) - of(touch.bodies[0])
 }
 
 /// Angular velocity of side 1 against side 0, along the world's axes.

@@ -6,7 +6,10 @@
 //! the velocities plus `−u_t·e / |x_t|`. Discs at their rim follow the normal impulse likewise.
 
 use super::dense::{Cholesky, Lu, dot};
-use super::rows::{FINISH_ROWS, Inner, Kind, NEARLY, Rows};
+use super::inner::Inner;
+use super::rows::{FINISH_ROWS, Kind, NEARLY, Rows};
+use super::way::{Way, length, shorten};
+use crate::math::{Lane, Lanes4};
 
 /// Linearisations in one finish of many rows.
 const TRIES: usize = 3;
@@ -42,6 +45,8 @@ pub(super) struct Scratch {
     /// What the unknowns do to the equations.
     matrix: Vec<f64>,
     velocity: Vec<f64>,
+    /// Right-hand side.
+    right: Vec<f64>,
     lu: Lu,
     cholesky: Cholesky,
     /// Is it the first try?
@@ -77,15 +82,15 @@ const FIXED: Link = Link { unknown: NONE, factor: 0.0, follows: NONE, ratio: 0.0
 impl Scratch {
     /// Room for this many, so that a finish allocates nothing.
     pub fn make_room(&mut self, rows: usize) {
-        if rows > FINISH_ROWS {
+        if rows > FINISH_ROWS || rows <= self.links.len() {
             return;
         }
-        self.lu.resize(rows);
-        self.cholesky.resize(rows);
+        self.lu.make_room(rows);
+        self.cholesky.make_room(rows);
         self.found.reserve(rows - self.found.len().min(rows));
         self.unknowns.reserve(rows - self.unknowns.len().min(rows));
         self.links.resize(rows, FIXED);
-        for v in [&mut self.velocity, &mut self.kept, &mut self.best] {
+        for v in [&mut self.velocity, &mut self.right, &mut self.kept, &mut self.best] {
             v.resize(rows, 0.0);
         }
         for v in [&mut self.a, &mut self.moved, &mut self.matrix] {
@@ -124,25 +129,25 @@ impl Scratch {
     /// else does.
     fn solve(&mut self, n: usize) {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has just been asked for it.
+        if crate::math::X4::<false>::is_available() {
+            // SAFETY: the machine has just been asked for both features.
             return unsafe { self.solve_wide(n) };
         }
-        self.solve_any(n);
+        self.solve_any::<Lanes4>(n);
     }
 
     /// [`Scratch::solve_any`] in wider registers: the same operations, the same bits.
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn solve_wide(&mut self, n: usize) {
-        self.solve_any(n);
+        self.solve_any::<crate::math::X4<false>>(n);
     }
 
     #[inline(always)]
-    fn solve_any(&mut self, n: usize) {
+    fn solve_any<L: Lane>(&mut self, n: usize) {
         let count = self.unknowns.len();
-        if self.links.iter().all(|l| l.follows == NONE) {
-            return self.solve_symmetric(n);
+        if self.links[..n].iter().all(|l| l.follows == NONE) {
+            return self.solve_symmetric::<L>(n);
         }
         self.moved[..count * n].fill(0.0);
         for row in 0..n {
@@ -169,31 +174,40 @@ impl Scratch {
         }
         let (matrix, a) = (&self.matrix[..count * count], &self.a);
         self.lu.factorise(count, matrix, |i| SOFT * a[unknowns[i].row * (n + 1)]);
-        self.lu.solve(|i| -along(&unknowns[i], velocity));
-        self.lu.refine(|i, x| -along(&unknowns[i], velocity) - dot(&matrix[i * count..i * count + count], x));
+        self.lu.solve::<L>(|i| -along(&unknowns[i], velocity));
+        self.lu.refine::<L>(|i, x| -along(&unknowns[i], velocity) - dot::<L>(&matrix[i * count..i * count + count], x));
         self.found.clear();
         self.found.extend_from_slice(self.lu.solution());
     }
 
     /// The same where nothing slides: the matrix is a part of `Y Yᵀ + R`.
     #[inline(always)]
-    fn solve_symmetric(&mut self, n: usize) {
+    fn solve_symmetric<L: Lane>(&mut self, n: usize) {
         let (count, unknowns) = (self.unknowns.len(), &self.unknowns);
-        for (row, i) in self.matrix.chunks_exact_mut(count.max(1)).zip(unknowns) {
-            let from = &self.a[i.row * n..i.row * n + n];
-            for (to, k) in row.iter_mut().zip(unknowns) {
-                *to = from[k.row];
+        // All rows are unknowns, in their order.
+        let whole = count == n;
+        if !whole {
+            for (row, i) in self.matrix.chunks_exact_mut(count.max(1)).zip(unknowns) {
+                let from = &self.a[i.row * n..i.row * n + n];
+                for (to, k) in row.iter_mut().zip(unknowns) {
+                    *to = from[k.row];
+                }
             }
         }
-        let matrix = &self.matrix;
+        let matrix = if whole { &self.a[..n * n] } else { &self.matrix[..count * count] };
+        let right = &mut self.right[..count];
+        for (right, unknown) in right.iter_mut().zip(unknowns) {
+            *right = -self.velocity[unknown.row];
+        }
         let soft = |i: usize| SOFT * matrix[i * count + i];
-        self.cholesky.factorise(count, |i, k| matrix[i * count + k] + if i == k { soft(i) } else { 0.0 });
-        self.cholesky.solve(|i| -self.velocity[unknowns[i].row]);
+        self.cholesky.factorise::<L>(count, |i, k| matrix[i * count + k] + if i == k { soft(i) } else { 0.0 });
+        self.cholesky.solve::<L>(right);
         self.found.clear();
         self.found.extend_from_slice(self.cholesky.solution());
-        let (found, velocity) = (&self.found, &self.velocity);
-        let left = |i: usize| -velocity[unknowns[i].row] - dot(&matrix[i * count..i * count + count], found);
-        self.cholesky.solve(left);
+        for (right, row) in right.iter_mut().zip(matrix.chunks_exact(count.max(1))) {
+            *right -= dot::<L>(row, &self.found);
+        }
+        self.cholesky.solve::<L>(right);
         self.found.iter_mut().zip(self.cholesky.solution()).for_each(|(x, more)| *x += more);
     }
 }
@@ -363,34 +377,5 @@ impl Rows {
                 }
             }
         }
-    }
-}
-
-/// Within a disc of this radius.
-fn shorten(rows: &mut [super::rows::Row], radius: f64) {
-    let size = rows.iter().map(|r| r.impulse * r.impulse).sum::<f64>().sqrt();
-    if size > radius {
-        rows.iter_mut().for_each(|r| r.impulse *= radius / size);
-    }
-}
-
-fn length(x: [f64; 2]) -> f64 {
-    (x[0] * x[0] + x[1] * x[1]).sqrt()
-}
-
-/// Where an impulse of two rows is in its disc.
-enum Way {
-    Inside,
-    Rim { direction: [f64; 2], stiffness: f64 },
-}
-
-impl Way {
-    fn of(x: [f64; 2], u: [f64; 2], step: f64, radius: f64) -> Self {
-        let to = [x[0] - step * u[0], x[1] - step * u[1]];
-        let size = length(to);
-        if size <= radius {
-            return Self::Inside;
-        }
-        Self::Rim { direction: to.map(|t| t / size), stiffness: (size - radius) / (radius * step) }
     }
 }

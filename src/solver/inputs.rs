@@ -18,6 +18,10 @@ impl AxisSet {
     pub(super) fn write_inputs(&mut self, m: &Model, ws: &mut Workspace<f64>, h: f64) {
         clear_balls(ws);
         for i in 0..m.axes.len() {
+            if self.between[i].on {
+                self.write_between(ws, i, h);
+                continue;
+            }
             if self.rests(i) {
                 continue;
             }
@@ -133,9 +137,10 @@ impl AxisSet {
     /// Puts axes that were outside their range back by the share of the way that their stop's ERP takes. True if there were
     /// any.
     pub fn push_back(&self, m: &Model, q: &mut [f64], angles: &[[f64; 3]]) -> bool {
-        let mut any = false;
+        if !self.pushes {
+            return false;
+        }
         for (axis, law) in m.axes.iter().zip(&self.laws).filter(|(_, law)| law.push != 0.0) {
-            any = true;
             match axis.slot {
                 AxisSlot::Scalar { q: k, .. } => q[k] += law.push,
                 AxisSlot::Euler { group, angle } => {
@@ -145,13 +150,16 @@ impl AxisSet {
                 AxisSlot::Apart { .. } => {}
             }
         }
-        any
+        true
     }
 
     /// Takes the rounding from the speeds: a standing axis has that of its riser to the last bit, and a sliding one that has
     /// been slowed down to a knot is not behind it.
     pub fn round_speeds(&self, m: &Model, v: &mut [f64]) {
-        for (axis, (law, place)) in m.axes.iter().zip(self.laws.iter().zip(&self.place)) {
+        for (i, (axis, (law, place))) in m.axes.iter().zip(self.laws.iter().zip(&self.place)).enumerate() {
+            if self.is_between(i, v) {
+                continue;
+            }
             if let AxisSlot::Scalar { v: k, .. } = axis.slot {
                 v[k] = law.rounded(*place, v[k]);
             }

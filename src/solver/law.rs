@@ -19,9 +19,9 @@ use crate::model::{Axis, DriveLimits, Effects};
 /// Knots at the most: friction, two of the drive, two stops.
 const KNOTS: usize = 5;
 /// Speeds nearer than this are one knot, rad/s or m/s.
-const SAME: f64 = 1e-12;
+pub(super) const SAME: f64 = 1e-12;
 /// An axis this near to its stop touches it: rounding of the step that brought it there; rad or m, relative.
-const AT_STOP: f64 = 1e-14;
+pub(super) const AT_STOP: f64 = 1e-14;
 /// Relative tolerance of the fit.
 const FIT: f64 = 1e-11;
 
@@ -69,15 +69,17 @@ pub struct Law {
     /// By how much static friction exceeds the dynamic one while the axis is on the riser of its friction.
     pub(super) stiction: f64,
     /// The same for an axis that stood at the start of the step, 0 for others.
-    stood: f64,
-    /// Soft stops: their torque per speed, and the speeds at which they begin.
-    soft: (f64, f64, f64),
+    pub(super) stood: f64,
+    /// Soft stops: their torque per speed; of all stops the speeds at which they begin.
+    pub(super) soft: (f64, f64, f64),
     /// Outside its range: by how much it is put back after the step, rad or m, signed.
     pub(super) push: f64,
     /// The axis stands in a soft stop: a spring, whose speed is that at the end of the step.
     pub(super) in_soft_stop: bool,
+    /// Two hard stops or none, damping, and nothing else: see [`super::between`].
+    pub(super) plain: bool,
     damping: f64,
-    friction: f64,
+    pub(super) friction: f64,
     pub(super) drive: DriveLaw,
 }
 
@@ -124,7 +126,7 @@ impl Law {
         (self.count, self.segments[0]) = (0, Segment::default());
         (self.stiction, self.stood, self.push) = (0.0, 0.0, 0.0);
         (self.damping, self.friction, self.soft) = (0.0, 0.0, (0.0, f64::NEG_INFINITY, f64::INFINITY));
-        (self.in_soft_stop, self.drive) = (false, DriveLaw::Idle);
+        (self.in_soft_stop, self.plain, self.drive) = (false, false, DriveLaw::Idle);
     }
 
     /// A servo without a bound on its torque wants what the stops allow.
@@ -157,7 +159,7 @@ impl Law {
     /// spring. Beyond a hard one the axis may only come back; its ERP's share of the way is a push that gives no speed.
     fn stops(&mut self, input: &AxisInput, (h, whole): (f64, f64)) {
         let (axis, soft) = (input.axis, input.axis.stop.cfm > 0.0);
-        let touching = AT_STOP * (1.0 + input.q.abs());
+        let touching = Self::touching(input.q);
         let slope = if soft { axis.stop.hk_plus_d(h, whole) } else { 0.0 };
         let room = |gap: f64| match gap {
             _ if gap.abs() <= touching => 0.0,
@@ -190,6 +192,7 @@ impl Law {
         }
     }
 
+    #[inline(always)]
     fn insert(&mut self, knot: Knot) {
         let mut at = 0;
         for k in &mut self.knots[..self.count] {
@@ -202,9 +205,9 @@ impl Law {
             at += usize::from(k.speed < knot.speed);
         }
         if self.count < KNOTS {
-            // Mostly they come in order.
-            if at < self.count {
-                self.knots.copy_within(at..self.count, at + 1);
+            // Mostly they come in order; a call to move one or two would cost more.
+            for k in (at..self.count).rev() {
+                self.knots[k + 1] = self.knots[k];
             }
             self.knots[at] = knot;
             self.count += 1;
@@ -219,6 +222,7 @@ impl Law {
             let intercept = before.intercept + knot.steeper * knot.speed - knot.drop;
             self.segments[k + 1] = Segment { intercept, slope };
         }
+        self.plain = self.is_plain();
     }
 
     /// How much more than this the torque can fall (`falls`) or rise before riser `k` is left; infinite at a wall.
@@ -278,12 +282,15 @@ impl Law {
     #[inline]
     pub(super) fn guess(&self, v: f64, memory: u8) -> usize {
         let knots = &self.knots[..self.count];
-        let riser = |k: &usize| self.is_riser(*k);
-        if let Some(k) = (0..self.count).filter(riser).find(|k| knots[*k].kinds & memory != 0) {
-            return self.within_walls(2 * k + 1);
+        for (k, knot) in knots.iter().enumerate() {
+            if knot.kinds & memory != 0 && self.is_riser(k) {
+                return self.within_walls(2 * k + 1);
+            }
         }
-        if let Some(k) = (0..self.count).filter(riser).find(|k| knots[*k].speed == v) {
-            return self.within_walls(2 * k + 1);
+        for (k, knot) in knots.iter().enumerate() {
+            if knot.speed == v && self.is_riser(k) {
+                return self.within_walls(2 * k + 1);
+            }
         }
         // At a kink from rest, the side to which the drive pushes.
         let behind = |k: &&Knot| k.speed < v || (k.speed == v && k.steeper > 0.0);

@@ -54,7 +54,7 @@ impl AxisSet {
         (qdd, lift): (&[f64], &mut [f64]),
     ) -> bool {
         let Some(contacts) = c.contacts.as_mut().filter(|contacts| !contacts.is_empty()) else { return false };
-        if !contacts.aim_lift(m, &mut c.rows, pass, |u| self.speeds(m, pass, qdd, u)) {
+        if !contacts.aim_lift((m, ws), &mut c.rows, pass, |u| self.speeds(m, pass, qdd, u)) {
             return false;
         }
         for k in 0..c.pairs.len() {
@@ -82,6 +82,9 @@ impl AxisSet {
             }
         } else {
             end_velocities(m, pass, qdd, u);
+        }
+        if !self.pushes {
+            return;
         }
         for (axis, law) in m.axes.iter().zip(&self.laws).filter(|(_, law)| law.push != 0.0) {
             if let AxisSlot::Scalar { v, .. } = axis.slot {

@@ -2,6 +2,7 @@
 //! first row of a block counts (the normal one of a contact), and its softness does not.
 
 use super::rows::{FINISH_ROWS, Rows, Solved};
+use crate::math::Lanes4;
 
 /// What is asked of a block's first row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -60,6 +61,8 @@ struct Dense {
     /// Which have an impulse: their velocity is 0.
     pushes: Vec<bool>,
     free: Vec<usize>,
+    /// Right-hand side of those.
+    right: Vec<f64>,
 }
 
 impl Lifts {
@@ -86,13 +89,15 @@ impl Lifts {
 impl Dense {
     fn resize(&mut self, n: usize) {
         self.a.resize(n * n, 0.0);
-        self.factor.resize(n);
+        self.factor.make_room(n);
         for v in [&mut self.bias, &mut self.x, &mut self.velocity, &mut self.at] {
             v.resize(n, 0.0);
         }
         self.pushes.resize(n, false);
         self.free.clear();
         self.free.reserve(n);
+        self.right.clear();
+        self.right.reserve(n);
     }
 }
 
@@ -298,11 +303,13 @@ impl Dense {
         self.free.clear();
         self.free.extend((0..n).filter(|i| self.pushes[*i]));
         let (a, free) = (&self.a, &self.free);
-        self.factor.factorise(free.len(), |i, k| {
+        self.factor.factorise::<Lanes4>(free.len(), |i, k| {
             let soft = if i == k { SOFT * own[free[i]] } else { 0.0 };
             a[free[i] * n + free[k]] + soft
         });
-        self.factor.solve(|i| -self.bias[free[i]]);
+        self.right.clear();
+        self.right.extend(free.iter().map(|i| -self.bias[*i]));
+        self.factor.solve::<Lanes4>(&self.right);
         self.x.fill(0.0);
         for (i, x) in free.iter().zip(self.factor.solution()) {
             self.x[*i] = *x;

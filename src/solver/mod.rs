@@ -4,6 +4,7 @@
 //! together are solved as a set ([`AxisSet`]) with the hybrid dynamics.
 
 mod axis_set;
+mod between;
 mod books;
 mod command;
 mod cone;
@@ -16,6 +17,7 @@ mod drive;
 mod finish;
 mod free_mobility;
 mod gauss_seidel;
+mod inner;
 mod inputs;
 mod law;
 mod lifting;
@@ -30,6 +32,8 @@ mod rows;
 mod seat;
 mod smooth;
 mod soft;
+mod touching;
+mod way;
 mod yielding;
 
 pub use axis_set::{AxisSet, StateRef, StepStart};

@@ -12,7 +12,9 @@ impl AxisSet {
         self.settle_contests();
         self.damped = (0.0, 0.0);
         for (i, axis) in m.axes.iter().enumerate() {
-            if !self.rests(i) {
+            if self.between[i].on {
+                self.finish_between(i, (h, qdd));
+            } else if !self.rests(i) {
                 self.finish_axis(m, ws, (i, axis), q, (h, qdd));
             }
         }

@@ -1,54 +1,56 @@
 //! Products of rows, `Y Yᵀ`: how an impulse of one moves another.
 
 use super::rows::{Block, CHUNK, Rows};
+use crate::math::{Lane, Lanes4};
 
 impl Rows {
     /// `Y Yᵀ + R`.
     pub(super) fn fill(&self, a: &mut [f64]) {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has just been asked for it.
+        if crate::math::X4::<false>::is_available() {
+            // SAFETY: the machine has just been asked for both features.
             return unsafe { self.fill_wide(a) };
         }
-        self.fill_any(a);
+        self.fill_any::<Lanes4>(a);
     }
 
     /// [`Rows::fill_any`] in wider registers: the same operations, the same bits.
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn fill_wide(&self, a: &mut [f64]) {
-        self.fill_any(a);
+        self.fill_any::<crate::math::X4<false>>(a);
     }
 
     #[inline(always)]
-    fn fill_any(&self, a: &mut [f64]) {
+    fn fill_any<L: Lane>(&self, a: &mut [f64]) {
         let n = self.rows.len();
         for (i, b) in self.blocks.iter().enumerate() {
             for c in &self.blocks[..=i] {
+                if !b.is_off() && !c.is_off() {
+                    self.couple_blocks::<L>(b, c, a);
+                    continue;
+                }
                 for k in 0..b.rows {
                     a[(b.first + k) * n + c.first..][..c.rows].fill(0.0);
                 }
-                if b.is_off() || c.is_off() {
-                    continue;
-                }
-                self.couple_blocks(b, c, a);
             }
         }
-        for i in 0..n {
-            a[i * n + i] += self.rows[i].softness;
-            for k in 0..i {
-                a[k * n + i] = a[i * n + k];
+        for (i, row) in self.rows.iter().enumerate() {
+            let (above, own) = a.split_at_mut(i * n);
+            own[i] += row.softness;
+            for (above, own) in above.chunks_exact_mut(n).zip(own) {
+                above[i] = *own;
             }
         }
     }
 
     #[inline(always)]
-    fn couple_blocks(&self, b: &Block, c: &Block, a: &mut [f64]) {
+    fn couple_blocks<L: Lane>(&self, b: &Block, c: &Block, a: &mut [f64]) {
         match (b.rows, c.rows) {
-            (3, 3) => self.couple::<3, 3>(b, c, a),
-            (3, 1) => self.couple::<3, 1>(b, c, a),
-            (1, 3) => self.couple::<1, 3>(b, c, a),
-            (1, 1) => self.couple::<1, 1>(b, c, a),
+            (3, 3) => self.couple::<L, 3, 3>(b, c, a),
+            (3, 1) => self.couple::<L, 3, 1>(b, c, a),
+            (1, 3) => self.couple::<L, 1, 3>(b, c, a),
+            (1, 1) => self.couple::<L, 1, 1>(b, c, a),
             _ => {
                 for p in 0..b.rows {
                     for q in 0..c.rows {
@@ -61,23 +63,28 @@ impl Rows {
 
     /// Two blocks of P and Q rows.
     #[inline(always)]
-    fn couple<const P: usize, const Q: usize>(&self, b: &Block, c: &Block, a: &mut [f64]) {
+    fn couple<L: Lane, const P: usize, const Q: usize>(&self, b: &Block, c: &Block, a: &mut [f64]) {
         let n = self.rows.len();
         let (ids, others) = (&self.ids[b.ids.clone()], &self.ids[c.ids.clone()]);
-        let y: [&[[f64; CHUNK]]; P] = std::array::from_fn(|p| self.numbers(b, p).as_chunks().0);
-        let z: [&[[f64; CHUNK]]; Q] = std::array::from_fn(|q| self.numbers(c, q).as_chunks().0);
-        let mut sums = [[[0.0; CHUNK]; Q]; P];
+        let mut y: [&[[f64; CHUNK]]; P] = [&[]; P];
+        for (p, y) in y.iter_mut().enumerate() {
+            *y = &self.numbers(b, p).as_chunks().0[..ids.len()];
+        }
+        let mut z: [&[[f64; CHUNK]]; Q] = [&[]; Q];
+        for (q, z) in z.iter_mut().enumerate() {
+            *z = &self.numbers(c, q).as_chunks().0[..others.len()];
+        }
+        let mut sums = [[L::of(0.0); Q]; P];
         let (mut i, mut k) = (0, 0);
         while i < ids.len() && k < others.len() {
             match ids[i].cmp(&others[k]) {
                 std::cmp::Ordering::Less => i += 1,
                 std::cmp::Ordering::Greater => k += 1,
                 std::cmp::Ordering::Equal => {
-                    for p in 0..P {
-                        for q in 0..Q {
-                            for j in 0..CHUNK {
-                                sums[p][q][j] += y[p][i][j] * z[q][k][j];
-                            }
+                    for q in 0..Q {
+                        let other = L::read(&z[q][k]);
+                        for p in 0..P {
+                            sums[p][q] += L::read(&y[p][i]) * other;
                         }
                     }
                     (i, k) = (i + 1, k + 1);
@@ -85,7 +92,8 @@ impl Rows {
             }
         }
         for (p, sums) in sums.iter().enumerate() {
-            for (q, s) in sums.iter().enumerate() {
+            for (q, sum) in sums.iter().enumerate() {
+                let s = sum.numbers();
                 a[(b.first + p) * n + c.first + q] = (s[0] + s[1]) + (s[2] + s[3]);
             }
         }

@@ -1,6 +1,7 @@
 //! The axis set after joints have come apart, or have been made whole again.
 
 use super::AxisSet;
+use super::between::Between;
 use super::couplings::Couplings;
 use super::mobility::Answers;
 use crate::model::{AxisSlot, Model};
@@ -13,6 +14,8 @@ impl AxisSet {
         self.weight.resize(m.nv, 1.0);
         self.paid.resize(m.axes.len() + m.softs.len(), (0.0, 0.0));
         self.couplings = Couplings::new(m);
+        self.between = Between::all(m);
+        self.laws.iter_mut().for_each(|law| law.plain = false);
         self.answers = Some(Box::new(Answers::new(m)));
         for (i, axis) in m.axes.iter().enumerate() {
             if matches!(axis.slot, AxisSlot::Apart { .. }) {

@@ -1,14 +1,9 @@
 //! Constraint rows in factor space: each holds its response y; its velocity is `bias + y·w`, its impulse x moves w by y x.
 
-use super::cone::{ConeBlock, Plane, disc};
+use super::inner::Inner;
 
 /// Numbers in a chunk of w.
 pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
-/// A visit of a block stays near what it had before, by this share of its trace: that moves no solution, and a block that is
-/// held in some direction has one.
-const NEAR: f64 = 1e-9;
-/// A contact whose normal moves by less than this share of its tangents is held.
-const DEAD: f64 = 1e-12;
 /// A residual within this many times the wanted one is not worth another try that may not help.
 pub(super) const NEARLY: f64 = 1e3;
 /// More rows than this are left to the iteration: the direct finish costs their cube.
@@ -68,16 +63,6 @@ pub(super) struct Block {
     pub inner: Inner,
     /// Of a contact that slides: velocity against impulse, from the last visit.
     pub slip: f64,
-}
-
-/// The block's own part of `Y Yᵀ + R`.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Inner {
-    /// Nothing moves when it pushes: it takes no part.
-    Off,
-    Single(f64),
-    Pair(Plane, f64),
-    Cone(ConeBlock),
 }
 
 /// What a solve came to.
@@ -187,18 +172,6 @@ impl Rows {
         &self.rows
     }
 
-    /// Takes the responses and softnesses of a block as they are now; it takes part from here on, unless nothing moves
-    /// when it pushes.
-    pub fn seal(&mut self, block: usize) {
-        let b = &self.blocks[block];
-        let inner = match b.rows {
-            1 => single(self.own(b, 0, 0)),
-            2 => pair([self.own(b, 0, 0), self.own(b, 0, 1), self.own(b, 1, 1)]),
-            _ => cone([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|(i, k)| self.own(b, i, k))),
-        };
-        self.blocks[block].inner = inner;
-    }
-
     /// Takes a block out, and its impulses.
     pub fn switch_off(&mut self, block: usize) {
         let b = &mut self.blocks[block];
@@ -206,13 +179,6 @@ impl Rows {
         for row in &mut self.rows[b.first..b.first + b.rows] {
             row.impulse = 0.0;
         }
-    }
-
-    fn own(&self, b: &Block, i: usize, k: usize) -> f64 {
-        let length = b.ids.len() * CHUNK;
-        let y = |n: usize| &self.values[b.values + n * length..b.values + (n + 1) * length];
-        let softness = if i == k { self.rows[b.first + i].softness } else { 0.0 };
-        dot(y(i), y(k)) + softness
     }
 
     /// Trace of a block's own part of `Y Yᵀ + R`.
@@ -261,11 +227,33 @@ impl Rows {
 
     /// w of the impulses.
     pub(super) fn gather(&mut self) {
-        self.w.fill(0.0);
-        for b in 0..self.blocks.len() {
-            for n in 0..self.blocks[b].rows {
-                let x = self.rows[self.blocks[b].first + n].impulse;
-                self.push(b, n, x);
+        let mut w = std::mem::take(&mut self.w);
+        self.gather_into(&mut w);
+        self.w = w;
+    }
+
+    fn gather_into(&self, w: &mut [f64]) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine has just been asked for it.
+            return unsafe { self.gather_wide(w) };
+        }
+        self.gather_any(w);
+    }
+
+    /// [`Rows::gather_any`] in wider registers: the same operations, the same bits.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn gather_wide(&self, w: &mut [f64]) {
+        self.gather_any(w);
+    }
+
+    #[inline(always)]
+    fn gather_any(&self, w: &mut [f64]) {
+        w.fill(0.0);
+        for b in &self.blocks {
+            for (n, row) in self.rows[b.first..b.first + b.rows].iter().enumerate() {
+                self.push_into(w, b, n, row.impulse);
             }
         }
     }
@@ -317,14 +305,6 @@ impl Rows {
         (sum[0] + sum[1]) + (sum[2] + sum[3])
     }
 
-    /// `w += y x`.
-    #[inline(always)]
-    pub(super) fn push(&mut self, block: usize, n: usize, x: f64) {
-        let mut w = std::mem::take(&mut self.w);
-        self.push_into(&mut w, &self.blocks[block], n, x);
-        self.w = w;
-    }
-
     /// `w += y x`, of another w.
     #[inline(always)]
     pub(super) fn push_into(&self, w: &mut [f64], b: &Block, n: usize, x: f64) {
@@ -357,42 +337,5 @@ impl Rows {
 impl Block {
     pub fn is_off(&self) -> bool {
         matches!(self.inner, Inner::Off)
-    }
-}
-
-fn single(h: f64) -> Inner {
-    if h > 0.0 { Inner::Single(h) } else { Inner::Off }
-}
-
-fn pair([a, b, d]: [f64; 3]) -> Inner {
-    let (trace, more) = (a + d, NEAR * (a + d));
-    if trace > 0.0 { Inner::Pair(Plane::new(a + more, b, d + more), trace) } else { Inner::Off }
-}
-
-/// A contact that gives way along its normal takes part, also where it is held along a tangent.
-fn cone(h: [f64; 6]) -> Inner {
-    let trace = h[0] + h[3] + h[5];
-    let more = NEAR * trace;
-    let near = [h[0] + more, h[1], h[2], h[3] + more, h[4], h[5] + more];
-    if h[0] > DEAD * trace { Inner::Cone(ConeBlock::new(near)) } else { Inner::Off }
-}
-
-/// Of two rows over the same chunks.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = [0.0; CHUNK];
-    for (a, b) in a.chunks_exact(CHUNK).zip(b.chunks_exact(CHUNK)) {
-        for k in 0..CHUNK {
-            sum[k] += a[k] * b[k];
-        }
-    }
-    (sum[0] + sum[1]) + (sum[2] + sum[3])
-}
-
-/// A disc of a pair of rows, or ± the radius of one.
-pub(super) fn within_disc(inner: &Inner, r: [f64; 2], radius: f64) -> [f64; 2] {
-    match inner {
-        Inner::Pair(plane, _) => disc(plane, r, radius),
-        Inner::Single(h) => [(-r[0] / h).min(radius).max(-radius), 0.0],
-        _ => [0.0; 2],
     }
 }

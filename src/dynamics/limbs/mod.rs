@@ -4,6 +4,7 @@
 //! [`super::aba`]: the bits are the same. What is gained depends on how many bodies stand side by side: about half of the
 //! time on a humanoid, nothing on a chain.
 
+mod frames;
 mod schedule;
 
 use super::aba::{Dof, Kin, inward, moved, outward};
@@ -17,6 +18,7 @@ use crate::math::Lanes4;
 use crate::math::X4;
 use crate::math::{Lane, M3, Real, V3};
 use crate::model::Model;
+pub(super) use frames::Frames;
 use schedule::{Below, Place, Schedule, Step};
 
 /// Four bodies.
@@ -150,7 +152,7 @@ fn solve<const HYBRID: bool>(
             let tau = if HYBRID { X::from_numbers(step.v.map(|v| ws.dofs[v].tau)) } else { pick(tau, &step.v) };
             given[s] = revolute(&k, (&kin[s].r, step.p), (kin[s].w, kin[s].v), speed, (&mut dof[s], tau));
         } else {
-            (given[s], dof[s]) = loaded(ws, step, (k, &kin[s]), speed);
+            loaded(ws, step, (k, &kin[s]), speed, (&mut given[s], &mut dof[s]));
         }
         if HYBRID {
             export_dof(ws, step, &dof[s]);
@@ -223,7 +225,13 @@ fn motion(place: Place, alone: &[Kin<f64>], kin: &[Kin<X>]) -> [f64; 6] {
 /// Bodies of which some have more than a torque on their joints: with a diagonal, or locked. The others keep the bits of
 /// [`revolute`].
 #[inline(always)]
-fn loaded(ws: &Workspace<f64>, step: &Step, (mut k, kin): (Acc<X>, &Kin<X>), speed: X) -> (Acc<X>, Dof<X>) {
+fn loaded(
+    ws: &Workspace<f64>,
+    step: &Step,
+    (mut k, kin): (Acc<X>, &Kin<X>),
+    speed: X,
+    (given, dof): (&mut Acc<X>, &mut Dof<X>),
+) {
     let input = step.v.map(|v| ws.dofs[v]);
     let lanes = DofIn {
         tau: X::from_numbers(input.map(|d| d.tau)),
@@ -232,17 +240,22 @@ fn loaded(ws: &Workspace<f64>, step: &Step, (mut k, kin): (Acc<X>, &Kin<X>), spe
         acceleration: X::from_numbers(input.map(|d| d.acceleration)),
         plain: false,
     };
-    let (mut plain_dof, mut dof) = (Dof::default(), Dof::default());
+    if !input.iter().any(|d| d.plain) {
+        eliminate_axis(&mut k, axis_z(), dof, &lanes);
+        k.push(turning_bias(speed, (kin.w, kin.v)));
+        *given = k.to_parent(&kin.r, step.p);
+        return;
+    }
+    let mut plain_dof = Dof::default();
     let plain = revolute(&k, (&kin.r, step.p), (kin.w, kin.v), speed, (&mut plain_dof, lanes.tau));
-    eliminate_axis(&mut k, axis_z(), &mut dof, &lanes);
+    eliminate_axis(&mut k, axis_z(), dof, &lanes);
     k.push(turning_bias(speed, (kin.w, kin.v)));
-    let mut given = k.to_parent(&kin.r, step.p);
+    *given = k.to_parent(&kin.r, step.p);
     for lane in (0..LANES).filter(|lane| input[*lane].plain) {
-        let acc = rows_mut(&mut given).into_iter().zip(rows(&plain));
-        let dof = dof_rows_mut(&mut dof).into_iter().zip(dof_rows(&plain_dof));
+        let acc = rows_mut(given).into_iter().zip(rows(&plain));
+        let dof = dof_rows_mut(dof).into_iter().zip(dof_rows(&plain_dof));
         acc.chain(dof).for_each(|(to, from)| to.numbers_mut()[lane] = from.numbers()[lane]);
     }
-    (given, dof)
 }
 
 /// Adds what one body hands on, to one lane.

@@ -175,7 +175,7 @@ fn step(m: &Model, lanes: [Option<usize>; LANES], place: &[Option<Place>], index
 
 /// Frames at angle 0 in those of the parents.
 #[inline(always)]
-fn frames(m: &Model, body: &[usize; LANES]) -> (M3<X>, V3<X>) {
+pub(super) fn frames(m: &Model, body: &[usize; LANES]) -> (M3<X>, V3<X>) {
     let [a, b, c, d] = body.map(|i| &m.bodies[i]);
     let v3 = |a: V3<f64>, b: V3<f64>, c: V3<f64>, d: V3<f64>| {
         let of = |k: [f64; LANES]| X::from_numbers(k);

@@ -1,7 +1,7 @@
 //! What contacts have done in a step: the energy they have taken, and the forces on bodies.
 
 use super::{Contacts, Pass, approach, end_velocities, turning};
-use crate::dynamics::kinematics;
+use crate::dynamics::{Workspace, velocities_of};
 use crate::math::V3;
 use crate::model::Model;
 use crate::solver::AxisSet;
@@ -21,10 +21,10 @@ impl Contacts {
 
     /// Books a piece, taken with `qdd`, of a step of `whole` seconds. Returns the work of the impulses x of the piece, J:
     /// Σ x·(u₀ + u₁)/2 with the rows of the pass, as the energy balance of the midpoint rule has it.
-    fn book(&mut self, m: &Model, pass: &Pass, qdd: &[f64], whole: f64) -> f64 {
+    fn book(&mut self, (m, ws): (&Model, &Workspace<f64>), pass: &Pass, qdd: &[f64], whole: f64) -> f64 {
         end_velocities(m, pass, qdd, &mut self.v1);
         self.v1.iter_mut().zip(pass.v0).for_each(|(v1, v0)| *v1 = 0.5 * (*v1 + v0));
-        kinematics(m, &mut self.end, pass.q, &self.v1);
+        velocities_of(m, (ws, &self.middle), &mut self.end, (pass.q, &self.v1), &self.chain);
         let mut work = 0.0;
         for point in self.points.iter().filter(|p| p.is_live()) {
             let (n, x) = (point.axes[0], &point.impulse);
@@ -48,12 +48,17 @@ impl AxisSet {
     }
 
     /// Books what contacts do in a piece of `h` seconds of a step of `whole`, taken from the velocities `v0` with `qdd` (nv);
-    /// `q` (nq) is the state of the last pass.
-    pub fn book_contacts(&mut self, m: &Model, (q, v0, qdd): (&[f64], &[f64], &[f64]), (h, whole): (f64, f64)) {
+    /// `q` (nq) is the state of the last pass, in `ws`.
+    pub fn book_contacts(
+        &mut self,
+        (m, ws): (&Model, &Workspace<f64>),
+        (q, v0, qdd): (&[f64], &[f64], &[f64]),
+        (h, whole): (f64, f64),
+    ) {
         let Some(contacts) = self.couplings.as_mut().and_then(|c| c.contacts.as_mut()) else { return };
         if !contacts.is_empty() {
             let pass = Pass { q, v0, h, mean: self.mean, sweeps: self.sweeps };
-            self.books.work.contacts -= contacts.book(m, &pass, qdd, whole);
+            self.books.work.contacts -= contacts.book((m, ws), &pass, qdd, whole);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::point::{Impulse, Point, Target};
 use super::{AIM, BAD, Contacts, EXTRA, FEW, Pass, ROUGH, TRIES, end_velocities};
-use crate::dynamics::{Response, Workspace, kinematics_of};
+use crate::dynamics::{Response, Workspace, kinematics_of, velocities_of};
 use crate::model::Model;
 use crate::solver::rows::{Rows, Solved};
 
@@ -56,7 +56,7 @@ impl Contacts {
             kinematics_of(m, &mut self.middle, (pass.q, pass.v0), &self.chain);
         }
         end_velocities(m, pass, qdd, &mut self.v1);
-        kinematics_of(m, &mut self.end, (pass.q, &self.v1), &self.chain);
+        velocities_of(m, (ws, &self.middle), &mut self.end, (pass.q, &self.v1), &self.chain);
         for point in self.points.iter_mut().filter(|p| p.is_live()) {
             point.place(&self.middle, pass);
             let mut target = Target {

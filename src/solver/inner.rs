@@ -1,0 +1,107 @@
+//! A block's own part of `Y Yᵀ + R`: how its rows move each other.
+
+use super::cone::{ConeBlock, Plane, disc};
+use super::rows::{Block, CHUNK, Rows};
+
+/// A visit of a block stays near what it had before, by this share of its trace: that moves no solution, and a block that is
+/// held in some direction has one.
+const NEAR: f64 = 1e-9;
+/// A contact whose normal moves by less than this share of its tangents is held.
+const DEAD: f64 = 1e-12;
+
+/// The block's own part of `Y Yᵀ + R`.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Inner {
+    /// Nothing moves when it pushes: it takes no part.
+    Off,
+    Single(f64),
+    Pair(Plane, f64),
+    Cone(ConeBlock),
+}
+
+impl Rows {
+    /// Takes the responses and softnesses of a block as they are now; it takes part from here on, unless nothing moves
+    /// when it pushes.
+    pub fn seal(&mut self, block: usize) {
+        self.blocks[block].inner = self.inner(block);
+    }
+
+    fn inner(&self, block: usize) -> Inner {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the machine has just been asked for it.
+            return unsafe { self.inner_wide(block) };
+        }
+        self.inner_any(block)
+    }
+
+    /// [`Rows::inner_any`] in wider registers: the same operations, the same bits.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn inner_wide(&self, block: usize) -> Inner {
+        self.inner_any(block)
+    }
+
+    #[inline(always)]
+    fn inner_any(&self, block: usize) -> Inner {
+        let b = &self.blocks[block];
+        match b.rows {
+            1 => single(self.own(b, 0, 0)),
+            2 => pair([self.own(b, 0, 0), self.own(b, 0, 1), self.own(b, 1, 1)]),
+            _ => cone([
+                self.own(b, 0, 0),
+                self.own(b, 0, 1),
+                self.own(b, 0, 2),
+                self.own(b, 1, 1),
+                self.own(b, 1, 2),
+                self.own(b, 2, 2),
+            ]),
+        }
+    }
+
+    #[inline(always)]
+    fn own(&self, b: &Block, i: usize, k: usize) -> f64 {
+        let length = b.ids.len() * CHUNK;
+        let y = |n: usize| &self.values[b.values + n * length..b.values + (n + 1) * length];
+        let softness = if i == k { self.rows[b.first + i].softness } else { 0.0 };
+        dot(y(i), y(k)) + softness
+    }
+}
+
+fn single(h: f64) -> Inner {
+    if h > 0.0 { Inner::Single(h) } else { Inner::Off }
+}
+
+fn pair([a, b, d]: [f64; 3]) -> Inner {
+    let (trace, more) = (a + d, NEAR * (a + d));
+    if trace > 0.0 { Inner::Pair(Plane::new(a + more, b, d + more), trace) } else { Inner::Off }
+}
+
+/// A contact that gives way along its normal takes part, also where it is held along a tangent.
+fn cone(h: [f64; 6]) -> Inner {
+    let trace = h[0] + h[3] + h[5];
+    let more = NEAR * trace;
+    let near = [h[0] + more, h[1], h[2], h[3] + more, h[4], h[5] + more];
+    if h[0] > DEAD * trace { Inner::Cone(ConeBlock::new(near)) } else { Inner::Off }
+}
+
+/// Of two rows over the same chunks.
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sum = [0.0; CHUNK];
+    for (a, b) in a.chunks_exact(CHUNK).zip(b.chunks_exact(CHUNK)) {
+        for k in 0..CHUNK {
+            sum[k] += a[k] * b[k];
+        }
+    }
+    (sum[0] + sum[1]) + (sum[2] + sum[3])
+}
+
+/// A disc of a pair of rows, or ± the radius of one.
+pub(super) fn within_disc(inner: &Inner, r: [f64; 2], radius: f64) -> [f64; 2] {
+    match inner {
+        Inner::Pair(plane, _) => disc(plane, r, radius),
+        Inner::Single(h) => [(-r[0] / h).min(radius).max(-radius), 0.0],
+        _ => [0.0; 2],
+    }
+}
