@@ -5,6 +5,9 @@
 //! Differential Equations II*, 1996, §IV.2). Velocity products of light limbs that whirl, and light links between heavy ones, are such
 //! motions: Euler's rule makes energy of them at every step, RK4 beyond its region of stability.
 
+use super::forest::Forest;
+use crate::model::Model;
+
 /// What moves the velocities by less than this share of 1 rad/s or m/s and themselves is no whirl.
 const NOTHING: f64 = 1e-6;
 
@@ -14,51 +17,23 @@ const FADES: f64 = 0.99;
 /// A step is not resolved if accelerations in it differ by more than this times the velocity, or 1 rad/s or m/s, over the step.
 const STEEP: f64 = 0.1;
 
-/// Changes of accelerations from one evaluation to the next.
+/// What RK4 looks at: changes of accelerations from one evaluation to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Whirl {
     last: Vec<f64>,
     /// Of `last` against the one before it.
     change: f64,
-    /// The greatest of the last hundred or so: that of a swing is 0 twice in its period.
-    size: f64,
-    known: bool,
 }
 
 impl Whirl {
     pub fn new(nv: usize) -> Self {
-        Self { last: vec![0.0; nv], change: 0.0, size: 0.0, known: false }
+        Self { last: vec![0.0; nv], change: 0.0 }
     }
 
-    pub fn forget(&mut self) {
-        (self.known, self.size) = (false, 0.0);
-    }
-
-    /// Notes accelerations without looking at them.
+    /// Notes the first of three evaluations.
     pub fn note(&mut self, qdd: &[f64]) {
         self.last.copy_from_slice(qdd);
-        (self.change, self.known) = (0.0, true);
-        self.size = largest(qdd).max(FADES * self.size);
-    }
-
-    /// Accelerations a step `h` after those that were noted last, at velocities `v`: is the change more than `least` of those that there have
-    /// been, or is the step steep?
-    pub fn grows(&self, qdd: &[f64], v: &[f64], (h, least): (f64, f64)) -> bool {
-        let change = self.difference(qdd);
-        let counts = self.known && h * change > NOTHING * (1.0 + largest(v));
-        counts && (change > least * self.size || self.steep(qdd, v, h))
-    }
-
-    /// The third of three evaluations: has the change grown to more than `least` of that from the first to the second, or is the step steep?
-    pub fn turns(&self, qdd: &[f64], v: &[f64], (h, least): (f64, f64)) -> bool {
-        let change = self.difference(qdd);
-        h * change > NOTHING * (1.0 + largest(v)) && (change > least * self.change || self.steep(qdd, v, h))
-    }
-
-    /// Does the change move a velocity by more than a share `STEEP` of itself?
-    fn steep(&self, qdd: &[f64], v: &[f64], h: f64) -> bool {
-        let pairs = self.last.iter().zip(qdd).zip(v);
-        pairs.into_iter().any(|((last, now), v)| h * (now - last).abs() > STEEP * (1.0 + v.abs()))
+        self.change = 0.0;
     }
 
     /// Notes the second evaluation.
@@ -67,9 +42,105 @@ impl Whirl {
         self.last.copy_from_slice(qdd);
     }
 
+    /// The third of three evaluations: has the change grown to more than `least` of that from the first to the second, or is the step steep?
+    pub fn turns(&self, qdd: &[f64], v: &[f64], (h, least): (f64, f64)) -> bool {
+        let change = self.difference(qdd);
+        let steep = || self.last.iter().zip(qdd).zip(v).any(|((last, now), v)| is_steep(now - last, *v, h));
+        h * change > NOTHING * (1.0 + largest(v)) && (change > least * self.change || steep())
+    }
+
     fn difference(&self, qdd: &[f64]) -> f64 {
         self.last.iter().zip(qdd).fold(0.0, |most: f64, (last, now)| most.max((now - last).abs()))
     }
+}
+
+/// What Euler's rule looks at: changes of the accelerations of each tree from one step to the next.
+#[derive(Clone, Debug)]
+pub(super) struct Trees {
+    /// Of each body, one past the last for the world.
+    of_body: Vec<usize>,
+    /// Of each velocity coordinate.
+    of: Vec<usize>,
+    trees: Vec<Tree>,
+    /// Accelerations of the step before.
+    last: Vec<f64>,
+    /// The same without contacts, which make them jump; empty if nothing can touch.
+    free: Vec<f64>,
+    known: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Tree {
+    /// The greatest change of an acceleration in it, since the step before.
+    change: f64,
+    /// Its greatest velocity, and its greatest acceleration now.
+    speed: f64,
+    now: f64,
+    /// The greatest acceleration of the last hundred steps or so: that of a swing is 0 twice in its period.
+    size: f64,
+    /// Does a contact act on it now, and did one in the step before?
+    touched: bool,
+    was_touched: bool,
+}
+
+impl Trees {
+    pub fn new(m: &Model) -> Self {
+        let forest = Forest::of(m);
+        let mut of = vec![0; m.nv];
+        for (body, b) in m.bodies.iter().enumerate().skip(1) {
+            of[b.v..b.v + b.joint.nv()].fill(forest.of_body[body]);
+        }
+        let trees = vec![Tree::default(); forest.count];
+        Self { of_body: forest.of_body, of, trees, last: vec![0.0; m.nv], free: vec![0.0; m.nv], known: false }
+    }
+
+    pub fn forget(&mut self) {
+        self.known = false;
+        self.trees.fill(Tree::default());
+    }
+
+    /// A contact acts on this body in the present step.
+    pub fn touch(&mut self, body: usize) {
+        if let Some(tree) = self.trees.get_mut(self.of_body[body]) {
+            tree.touched = true;
+        }
+    }
+
+    /// Accelerations `qdd`, a step `h` after those before them, at velocities `v`; without contacts they would be `free`, which is empty if
+    /// nothing can touch. Is their change in some tree that nothing touches more than `least` of those that there have been, or is
+    /// the step steep?
+    pub fn grows(&mut self, (qdd, free): (&[f64], &[f64]), v: &[f64], (h, least): (f64, f64)) -> bool {
+        let free = if free.is_empty() { qdd } else { free };
+        let mut steep = false;
+        for (i, v) in v.iter().enumerate() {
+            let tree = &mut self.trees[self.of[i]];
+            tree.change = tree.change.max((qdd[i] - self.last[i]).abs());
+            (tree.speed, tree.now) = (tree.speed.max(v.abs()), tree.now.max(qdd[i].abs()));
+            steep |= is_steep(free[i] - self.free[i], *v, h);
+        }
+        self.last.copy_from_slice(qdd);
+        self.free.copy_from_slice(free);
+        let grown = self.trees.iter_mut().fold(false, |any, tree| tree.grows(h, least) || any);
+        std::mem::replace(&mut self.known, true) && (steep || grown)
+    }
+}
+
+impl Tree {
+    /// Ends a step.
+    fn grows(&mut self, h: f64, least: f64) -> bool {
+        let jumps = self.touched || self.was_touched;
+        let counts = h * self.change > NOTHING * (1.0 + self.speed);
+        let grows = !jumps && counts && self.change > least * self.size;
+        let size = if self.touched { 0.0 } else { self.now.max(FADES * self.size) };
+        *self = Self { size, was_touched: self.touched, ..Self::default() };
+        grows
+    }
+}
+
+/// Does the change move a velocity by more than a share `STEEP` of itself? One that is no number does.
+fn is_steep(change: f64, v: f64, h: f64) -> bool {
+    let moves = h * change.abs();
+    moves > STEEP * (1.0 + v.abs()) || !moves.is_finite()
 }
 
 fn largest(v: &[f64]) -> f64 {
