@@ -97,15 +97,13 @@ impl Rbx {
     }
 
     /// Would the rule make energy of a piece with these accelerations? What contacts do is no whirl, and neither are laws that change, unless
-    /// they throw velocities about.
+    /// they throw velocities about. Shorter pieces are looked at for that only: changes since another piece are not of their length.
     fn whirls(&mut self, h: f64) -> bool {
-        let Some(mut whirl) = self.trees.take() else { return false };
+        let Some(trees) = &mut self.trees else { return false };
         for body in self.axes.contacts().into_iter().flat_map(|c| c.acting_bodies()).flatten() {
-            whirl.touch(body);
+            trees.touch(body);
         }
         let least = if self.axes.is_calm() && h == self.whole_step { WHIRLS } else { f64::INFINITY };
-        let grows = whirl.grows((&self.qdd, &self.axes.free), &self.state.v, (h, least));
-        self.trees = Some(whirl);
-        grows
+        trees.grow((&self.qdd, &self.axes.free), &self.state.v, (h, least))
     }
 }

@@ -188,7 +188,7 @@ pub struct StepSettings {
 /// What became of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepReport {
-    /// RK4 handed the step to the implicit midpoint rule, or the extrapolation method its rest.
+    /// RK4 or Euler's rule handed the step to the implicit midpoint rule, or Euler's rule or the extrapolation method its rest.
     pub fell_back: bool,
     /// The axis set did not settle within its passes.
     pub unsettled: bool,
@@ -235,9 +235,8 @@ pub struct Rbx {
     pub(super) sleep: Option<Sleep>,
     /// The step, s, of which a halved one is a part.
     pub(super) whole_step: f64,
-    /// `None` if the integrator has no need of it.
+    /// What RK4 and Euler's rule look for whirls with; `None` for all others.
     pub(super) whirl: Option<Whirl>,
-    /// The same.
     pub(super) trees: Option<Trees>,
     pub(super) midpoint: Option<Midpoint>,
     stages: Option<Stages>,

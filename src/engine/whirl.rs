@@ -17,6 +17,10 @@ const FADES: f64 = 0.99;
 /// A step is not resolved if accelerations in it differ by more than this times the velocity, or 1 rad/s or m/s, over the step.
 const STEEP: f64 = 0.1;
 
+/// The same where bodies touch. A blow turns the velocity products once, what whirls does so step by step: so often in a row they must change.
+const STEEP_IN_TOUCH: f64 = 1.0;
+const IN_A_ROW: u32 = 2;
+
 /// What RK4 looks at: changes of accelerations from one evaluation to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Whirl {
@@ -54,33 +58,44 @@ impl Whirl {
     }
 }
 
-/// What Euler's rule looks at: changes of the accelerations of each tree from one step to the next.
+/// What Euler's rule looks at: changes of the accelerations of each tree on the world from one step to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Trees {
-    /// Of each body, one past the last for the world.
+    /// Of each body; of the world one past the last.
     of_body: Vec<usize>,
-    /// Of each velocity coordinate.
+    /// Of each velocity coordinate (nv).
     of: Vec<usize>,
     trees: Vec<Tree>,
-    /// Accelerations of the step before.
+    /// Accelerations of the step before (nv).
     last: Vec<f64>,
-    /// The same without contacts, which make them jump; empty if nothing can touch.
+    /// The same without contacts, which make them jump.
     free: Vec<f64>,
     known: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Tree {
-    /// The greatest change of an acceleration in it, since the step before.
+    /// The greatest change of an acceleration in it since the step before.
     change: f64,
+    /// The greatest share of a velocity that such a change without contacts moves it by.
+    moves: f64,
     /// Its greatest velocity, and its greatest acceleration now.
     speed: f64,
     now: f64,
+    /// Does a contact act on it now?
+    touched: bool,
+    past: Past,
+}
+
+/// What a tree keeps from step to step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Past {
     /// The greatest acceleration of the last hundred steps or so: that of a swing is 0 twice in its period.
     size: f64,
-    /// Does a contact act on it now, and did one in the step before?
+    /// Did a contact act on it in the last step?
     touched: bool,
-    was_touched: bool,
+    /// Steps in a row that moved a velocity by more than `STEEP_IN_TOUCH`.
+    steep: u32,
 }
 
 impl Trees {
@@ -106,41 +121,43 @@ impl Trees {
         }
     }
 
-    /// Accelerations `qdd`, a step `h` after those before them, at velocities `v`; without contacts they would be `free`, which is empty if
-    /// nothing can touch. Is their change in some tree that nothing touches more than `least` of those that there have been, or is
-    /// the step steep?
-    pub fn grows(&mut self, (qdd, free): (&[f64], &[f64]), v: &[f64], (h, least): (f64, f64)) -> bool {
+    /// Notes accelerations `qdd`, a step `h` after those before them, at velocities `v`; without contacts they would be `free`, which is empty
+    /// if nothing can touch. Is the change in a tree that nothing touches more than `least` of those that there have been, or is the
+    /// step steep in any?
+    pub fn grow(&mut self, (qdd, free): (&[f64], &[f64]), v: &[f64], (h, least): (f64, f64)) -> bool {
         let free = if free.is_empty() { qdd } else { free };
-        let mut steep = false;
         for (i, v) in v.iter().enumerate() {
             let tree = &mut self.trees[self.of[i]];
             tree.change = tree.change.max((qdd[i] - self.last[i]).abs());
+            tree.moves = tree.moves.max(h * (free[i] - self.free[i]).abs() / (1.0 + v.abs()));
             (tree.speed, tree.now) = (tree.speed.max(v.abs()), tree.now.max(qdd[i].abs()));
-            steep |= is_steep(free[i] - self.free[i], *v, h);
         }
         self.last.copy_from_slice(qdd);
         self.free.copy_from_slice(free);
-        let grown = self.trees.iter_mut().fold(false, |any, tree| tree.grows(h, least) || any);
-        std::mem::replace(&mut self.known, true) && (steep || grown)
+        let known = std::mem::replace(&mut self.known, true);
+        self.trees.iter_mut().fold(false, |any, tree| tree.grows(known, (h, least)) || any)
     }
 }
 
 impl Tree {
-    /// Ends a step.
-    fn grows(&mut self, h: f64, least: f64) -> bool {
-        let jumps = self.touched || self.was_touched;
-        let counts = h * self.change > NOTHING * (1.0 + self.speed);
-        let grows = !jumps && counts && self.change > least * self.size;
-        let size = if self.touched { 0.0 } else { self.now.max(FADES * self.size) };
-        *self = Self { size, was_touched: self.touched, ..Self::default() };
-        grows
+    /// Ends a step; of the first one nothing is known to compare it with.
+    fn grows(&mut self, known: bool, (h, least): (f64, f64)) -> bool {
+        let steep = if known && self.moves > STEEP_IN_TOUCH { self.past.steep.saturating_add(1) } else { 0 };
+        let grows = if self.touched || self.past.touched {
+            steep >= IN_A_ROW
+        } else {
+            let counts = h * self.change > NOTHING * (1.0 + self.speed);
+            self.moves > STEEP || (counts && self.change > least * self.past.size)
+        };
+        let size = if self.touched { 0.0 } else { self.now.max(FADES * self.past.size) };
+        *self = Self { past: Past { size, touched: self.touched, steep }, ..Self::default() };
+        known && grows
     }
 }
 
-/// Does the change move a velocity by more than a share `STEEP` of itself? One that is no number does.
+/// Does the change move a velocity by more than a share `STEEP` of itself?
 fn is_steep(change: f64, v: f64, h: f64) -> bool {
-    let moves = h * change.abs();
-    moves > STEEP * (1.0 + v.abs()) || !moves.is_finite()
+    h * change.abs() > STEEP * (1.0 + v.abs())
 }
 
 fn largest(v: &[f64]) -> f64 {
