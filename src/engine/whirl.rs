@@ -7,6 +7,7 @@
 
 use super::forest::Forest;
 use crate::model::Model;
+use std::ops::Range;
 
 /// What moves the velocities by less than this share of 1 rad/s or m/s and themselves is no whirl.
 const NOTHING: f64 = 1e-6;
@@ -63,12 +64,12 @@ impl Whirl {
 pub(super) struct Trees {
     /// Of each body; of the world one past the last.
     of_body: Vec<usize>,
-    /// Of each velocity coordinate (nv).
-    of: Vec<usize>,
+    /// Velocity coordinates that follow each other in one tree, and that tree.
+    runs: Vec<(Range<usize>, usize)>,
     trees: Vec<Tree>,
-    /// Accelerations of the step before (nv).
+    /// Accelerations of the step before (nv), of trees that nothing touched in it.
     last: Vec<f64>,
-    /// The same without contacts, which make them jump.
+    /// The same of all trees without contacts, which make them jump; not used if nothing can touch.
     free: Vec<f64>,
     known: bool,
 }
@@ -77,10 +78,9 @@ pub(super) struct Trees {
 struct Tree {
     /// The greatest change of an acceleration in it since the step before.
     change: f64,
-    /// The greatest share of a velocity that such a change without contacts moves it by.
-    moves: f64,
-    /// Its greatest velocity, and its greatest acceleration now.
-    speed: f64,
+    /// The greatest of such changes without contacts over 1 and the velocity, 1/s.
+    rate: f64,
+    /// Its greatest acceleration now.
     now: f64,
     /// Does a contact act on it now?
     touched: bool,
@@ -101,12 +101,16 @@ struct Past {
 impl Trees {
     pub fn new(m: &Model) -> Self {
         let forest = Forest::of(m);
-        let mut of = vec![0; m.nv];
+        let mut runs: Vec<(Range<usize>, usize)> = vec![];
         for (body, b) in m.bodies.iter().enumerate().skip(1) {
-            of[b.v..b.v + b.joint.nv()].fill(forest.of_body[body]);
+            let (at, tree) = (b.v..b.v + b.joint.nv(), forest.of_body[body]);
+            match runs.last_mut() {
+                Some((run, same)) if *same == tree && run.end == at.start => run.end = at.end,
+                _ => runs.push((at, tree)),
+            }
         }
         let trees = vec![Tree::default(); forest.count];
-        Self { of_body: forest.of_body, of, trees, last: vec![0.0; m.nv], free: vec![0.0; m.nv], known: false }
+        Self { of_body: forest.of_body, runs, trees, last: vec![0.0; m.nv], free: vec![0.0; m.nv], known: false }
     }
 
     pub fn forget(&mut self) {
@@ -125,33 +129,75 @@ impl Trees {
     /// if nothing can touch. Is the change in a tree that nothing touches more than `least` of those that there have been, or is the
     /// step steep in any?
     pub fn grow(&mut self, (qdd, free): (&[f64], &[f64]), v: &[f64], (h, least): (f64, f64)) -> bool {
-        let free = if free.is_empty() { qdd } else { free };
-        for (i, v) in v.iter().enumerate() {
-            let tree = &mut self.trees[self.of[i]];
-            tree.change = tree.change.max((qdd[i] - self.last[i]).abs());
-            tree.moves = tree.moves.max(h * (free[i] - self.free[i]).abs() / (1.0 + v.abs()));
-            (tree.speed, tree.now) = (tree.speed.max(v.abs()), tree.now.max(qdd[i].abs()));
+        for (at, tree) in &self.runs {
+            let tree = &mut self.trees[*tree];
+            let (qdd, last, v) = (&qdd[at.clone()], &mut self.last[at.clone()], &v[at.clone()]);
+            match free.get(at.clone()) {
+                Some(free) => {
+                    tree.look_free(free, &self.free[at.clone()], v);
+                    self.free[at.clone()].copy_from_slice(free);
+                }
+                None => tree.look_free(qdd, last, v),
+            }
+            if !tree.touched {
+                tree.look(qdd, last);
+            }
         }
-        self.last.copy_from_slice(qdd);
-        self.free.copy_from_slice(free);
-        let known = std::mem::replace(&mut self.known, true);
-        self.trees.iter_mut().fold(false, |any, tree| tree.grows(known, (h, least)) || any)
+        let speed = |tree: usize| {
+            self.runs
+                .iter()
+                .filter(|run| run.1 == tree)
+                .fold(0.0, |most: f64, run| most.max(largest(&v[run.0.clone()])))
+        };
+        let mut grows = false;
+        for (i, tree) in self.trees.iter_mut().enumerate() {
+            grows |= tree.is_steep(h) || (tree.grows(least) && h * tree.change > NOTHING * (1.0 + speed(i)));
+            tree.end_step(h, self.known);
+        }
+        std::mem::replace(&mut self.known, true) && grows
     }
 }
 
 impl Tree {
-    /// Ends a step; of the first one nothing is known to compare it with.
-    fn grows(&mut self, known: bool, (h, least): (f64, f64)) -> bool {
-        let steep = if known && self.moves > STEEP_IN_TOUCH { self.past.steep.saturating_add(1) } else { 0 };
-        let grows = if self.touched || self.past.touched {
-            steep >= IN_A_ROW
-        } else {
-            let counts = h * self.change > NOTHING * (1.0 + self.speed);
-            self.moves > STEEP || (counts && self.change > least * self.past.size)
-        };
+    /// Notes accelerations without contacts.
+    fn look_free(&mut self, free: &[f64], last: &[f64], v: &[f64]) {
+        for ((now, last), v) in free.iter().zip(last).zip(v) {
+            let rate = (now - last).abs() / (1.0 + v.abs());
+            self.rate = if rate > self.rate { rate } else { self.rate };
+        }
+    }
+
+    /// Notes accelerations.
+    fn look(&mut self, qdd: &[f64], last: &mut [f64]) {
+        for (now, last) in qdd.iter().zip(last) {
+            let change = (now - *last).abs();
+            self.change = if change > self.change { change } else { self.change };
+            self.now = if now.abs() > self.now { now.abs() } else { self.now };
+            *last = *now;
+        }
+    }
+
+    /// Does a contact act on it, or did in the last step?
+    fn jumps(&self) -> bool {
+        self.touched || self.past.touched
+    }
+
+    fn grows(&self, least: f64) -> bool {
+        !self.jumps() && self.change > least * self.past.size
+    }
+
+    fn is_steep(&self, h: f64) -> bool {
+        match self.jumps() {
+            true => h * self.rate > STEEP_IN_TOUCH && self.past.steep + 1 >= IN_A_ROW,
+            false => h * self.rate > STEEP,
+        }
+    }
+
+    /// Of the first step nothing is `known` to compare it with.
+    fn end_step(&mut self, h: f64, known: bool) {
+        let steep = if known && h * self.rate > STEEP_IN_TOUCH { (self.past.steep + 1).min(IN_A_ROW) } else { 0 };
         let size = if self.touched { 0.0 } else { self.now.max(FADES * self.past.size) };
         *self = Self { past: Past { size, touched: self.touched, steep }, ..Self::default() };
-        known && grows
     }
 }
 
