@@ -199,6 +199,11 @@ fn told(s: &realnoid::world::Stats) -> bool {
         || s.guarded_energy + s.trimmed_energy > 0.0
 }
 
+/// A grain about its own axis may have no inertia that the reader takes for one: such a scene is refused, and says so.
+fn refused(why: String) -> TestCaseError {
+    if why.contains("error[singular-joint]") { TestCaseError::reject(why) } else { TestCaseError::fail(why) }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 
@@ -209,12 +214,8 @@ proptest! {
         let file = folder.path().join("drawn.yaml");
         std::fs::write(&file, d.case()).unwrap();
         let rung = Rung { integrator: Integrator::NAMES[d.integrator].1, step_ns: STEPS_NS[d.step] };
-        let case = Case::read_at(&file, Some(rung)).map_err(TestCaseError::fail)?;
+        let case = Case::read_at(&file, Some(rung)).map_err(refused)?;
         let Outcome::Done(run) = case.run(EngineKind::Rbx) else { return Err(TestCaseError::fail("not run")) };
-        // Known limit: where bodies touch, Euler does not look for whirls, and a light limb may run away. The world then stands still and says so.
-        if rung.integrator == Integrator::SemiImplicitEuler && run.stats.diverged_steps > 0 {
-            return Ok(());
-        }
         prop_assert!(run.stats.diverged_steps == 0, "diverged\n{}\n{}", d.urdf(), d.case());
         let f = run.figures[0];
         prop_assert!(f.error.is_finite(), "not finite\n{}\n{}", d.urdf(), d.case());

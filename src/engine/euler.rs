@@ -19,15 +19,15 @@ enum End {
 }
 
 impl Rbx {
-    /// One step of `s.h`, in halves, quarters … where bodies might pass through each other. False, with the state as before, if the rule
-    /// would make energy of it.
+    /// One step of `s.h`, in halves, quarters … where bodies might pass through each other. Returns what is left of it, s: that of which the
+    /// rule would make energy.
     pub(super) fn euler(
         &mut self,
         m: &Model,
         commands: &[AxisCommand],
         s: &StepSettings,
         report: &mut StepReport,
-    ) -> bool {
+    ) -> f64 {
         let pieces = 1u32 << DEEPEST;
         let (mut done, mut depth) = (0, 0);
         while done < pieces {
@@ -40,15 +40,14 @@ impl Rbx {
                     report.divided = true;
                     continue;
                 }
-                // Nothing has been done yet.
-                End::Whirls => return false,
+                End::Whirls => return s.h * f64::from(pieces - done) / f64::from(pieces),
             }
             done += piece;
             while depth > 0 && done % (pieces >> (depth - 1)) == 0 {
                 depth -= 1;
             }
         }
-        true
+        0.0
     }
 
     fn euler_piece(
@@ -97,17 +96,14 @@ impl Rbx {
         End::Done
     }
 
-    /// Would the rule make energy of a whole step with these accelerations? Contacts are no whirl, and neither are laws that change, unless
-    /// they throw velocities about.
+    /// Would the rule make energy of a piece with these accelerations? What contacts do is no whirl, and neither are laws that change, unless
+    /// they throw velocities about. Shorter pieces are looked at for that only: changes since another piece are not of their length.
     fn whirls(&mut self, h: f64) -> bool {
-        let Some(whirl) = &mut self.whirl else { return false };
-        if self.axes.touches() {
-            whirl.forget();
-            return false;
+        let Some(trees) = &mut self.trees else { return false };
+        for body in self.axes.contacts().into_iter().flat_map(|c| c.acting_bodies()).flatten() {
+            trees.touch(body);
         }
-        let least = if self.axes.is_calm() { WHIRLS } else { f64::INFINITY };
-        let grows = h == self.whole_step && whirl.grows(&self.qdd, &self.state.v, (h, least));
-        whirl.note(&self.qdd);
-        grows
+        let least = if self.axes.is_calm() && h == self.whole_step { WHIRLS } else { f64::INFINITY };
+        trees.grow((&self.qdd, &self.axes.free), &self.state.v, (h, least))
     }
 }

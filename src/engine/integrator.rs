@@ -10,7 +10,7 @@ pub enum Integrator {
     #[default]
     ImplicitMidpoint,
     /// First order; damping, servos, stops and friction implicit, the velocity products explicit. Steps of which it would make energy
-    /// (light limbs that whirl, light links between heavy ones) are made by the default instead, and counted.
+    /// (light limbs that whirl, light links between heavy ones), or what is left of them, are made by the default instead, and counted.
     SemiImplicitEuler,
     /// Classical fourth order; axes that stand still stand. Steps in which an axis begins or ceases to stand (in its dry
     /// friction, at a stop, at a servo's target), a servo is on its way, or a viscous term or a whirl is stiffer than the

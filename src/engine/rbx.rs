@@ -6,7 +6,7 @@ use super::midpoint::Midpoint;
 use super::paid::Paid;
 use super::rk4::Stages;
 use super::sleep::Sleep;
-use super::whirl::Whirl;
+use super::whirl::{Trees, Whirl};
 use crate::dynamics::{Kinematics, Scheme, Workspace, kinematics, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
@@ -188,7 +188,7 @@ pub struct StepSettings {
 /// What became of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepReport {
-    /// RK4 handed the step to the implicit midpoint rule, or the extrapolation method its rest.
+    /// RK4 or Euler's rule handed the step to the implicit midpoint rule, or Euler's rule or the extrapolation method its rest.
     pub fell_back: bool,
     /// The axis set did not settle within its passes.
     pub unsettled: bool,
@@ -235,8 +235,9 @@ pub struct Rbx {
     pub(super) sleep: Option<Sleep>,
     /// The step, s, of which a halved one is a part.
     pub(super) whole_step: f64,
-    /// `None` if the integrator has no need of it.
+    /// What RK4 and Euler's rule look for whirls with; `None` for all others.
     pub(super) whirl: Option<Whirl>,
+    pub(super) trees: Option<Trees>,
     pub(super) midpoint: Option<Midpoint>,
     stages: Option<Stages>,
     pub(super) extrapolation: Option<Box<Extrapolation>>,
@@ -260,6 +261,7 @@ impl Rbx {
             sleep: Sleep::new(m),
             whole_step: 0.0,
             whirl: None,
+            trees: None,
             midpoint: None,
             stages: None,
             extrapolation: None,
@@ -270,7 +272,10 @@ impl Rbx {
     /// Makes the memory that an integrator needs, so that steps make none.
     pub fn prepare(&mut self, m: &Model, integrator: Integrator) {
         self.midpoint = Some(Midpoint::new(m));
-        self.whirl = matches!(integrator, Integrator::SemiImplicitEuler | Integrator::Rk4).then(|| Whirl::new(m.nv));
+        self.whirl = (integrator == Integrator::Rk4).then(|| Whirl::new(m.nv));
+        let euler = integrator == Integrator::SemiImplicitEuler;
+        self.trees = euler.then(|| Trees::new(m));
+        self.axes.free = vec![0.0; if euler && self.axes.contacts().is_some() { m.nv } else { 0 }];
         self.stages = (integrator == Integrator::Rk4).then(|| Stages::new(m));
         let extrapolates = integrator == Integrator::Extrapolation;
         self.extrapolation = extrapolates.then(|| Box::new(Extrapolation::new(m)));
@@ -289,8 +294,8 @@ impl Rbx {
         if let Some(midpoint) = &mut self.midpoint {
             midpoint.forget();
         }
-        if let Some(whirl) = &mut self.whirl {
-            whirl.forget();
+        if let Some(trees) = &mut self.trees {
+            trees.forget();
         }
         if let Some(extrapolation) = &mut self.extrapolation {
             extrapolation.forget();
@@ -307,18 +312,19 @@ impl Rbx {
         self.whole_step = s.h;
         self.axes.open_books();
         let tempered = self.axes.tempered();
-        let done = match s.integrator {
-            Integrator::ImplicitMidpoint => false,
+        let rest = match s.integrator {
+            Integrator::ImplicitMidpoint => s.h,
             Integrator::SemiImplicitEuler => self.euler(m, commands, s, &mut report),
-            Integrator::Rk4 => self.rk4(m, commands, s, &mut report),
+            Integrator::Rk4 if self.rk4(m, commands, s, &mut report) => 0.0,
+            Integrator::Rk4 => s.h,
             Integrator::Extrapolation => {
                 self.extrapolated_step(m, commands, s, &mut report);
-                true
+                0.0
             }
         };
-        if let Some(mut midpoint) = self.midpoint.take_if(|_| !done) {
+        if let Some(mut midpoint) = self.midpoint.take_if(|_| rest > 0.0) {
             report.fell_back = s.integrator != Integrator::ImplicitMidpoint;
-            self.midpoint_step(m, &mut midpoint, commands, s, &mut report);
+            self.midpoint_step(m, &mut midpoint, commands, &StepSettings { h: rest, ..*s }, &mut report);
             self.midpoint = Some(midpoint);
         }
         if !self.state.finite() {

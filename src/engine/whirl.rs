@@ -5,6 +5,10 @@
 //! Differential Equations II*, 1996, §IV.2). Velocity products of light limbs that whirl, and light links between heavy ones, are such
 //! motions: Euler's rule makes energy of them at every step, RK4 beyond its region of stability.
 
+use super::forest::Forest;
+use crate::model::Model;
+use std::ops::Range;
+
 /// What moves the velocities by less than this share of 1 rad/s or m/s and themselves is no whirl.
 const NOTHING: f64 = 1e-6;
 
@@ -14,51 +18,27 @@ const FADES: f64 = 0.99;
 /// A step is not resolved if accelerations in it differ by more than this times the velocity, or 1 rad/s or m/s, over the step.
 const STEEP: f64 = 0.1;
 
-/// Changes of accelerations from one evaluation to the next.
+/// The same where bodies touch. A blow turns the velocity products once, what whirls does so step by step: so often in a row they must change.
+const STEEP_IN_TOUCH: f64 = 1.0;
+const IN_A_ROW: u32 = 2;
+
+/// What RK4 looks at: changes of accelerations from one evaluation to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Whirl {
     last: Vec<f64>,
     /// Of `last` against the one before it.
     change: f64,
-    /// The greatest of the last hundred or so: that of a swing is 0 twice in its period.
-    size: f64,
-    known: bool,
 }
 
 impl Whirl {
     pub fn new(nv: usize) -> Self {
-        Self { last: vec![0.0; nv], change: 0.0, size: 0.0, known: false }
+        Self { last: vec![0.0; nv], change: 0.0 }
     }
 
-    pub fn forget(&mut self) {
-        (self.known, self.size) = (false, 0.0);
-    }
-
-    /// Notes accelerations without looking at them.
+    /// Notes the first of three evaluations.
     pub fn note(&mut self, qdd: &[f64]) {
         self.last.copy_from_slice(qdd);
-        (self.change, self.known) = (0.0, true);
-        self.size = largest(qdd).max(FADES * self.size);
-    }
-
-    /// Accelerations a step `h` after those that were noted last, at velocities `v`: is the change more than `least` of those that there have
-    /// been, or is the step steep?
-    pub fn grows(&self, qdd: &[f64], v: &[f64], (h, least): (f64, f64)) -> bool {
-        let change = self.difference(qdd);
-        let counts = self.known && h * change > NOTHING * (1.0 + largest(v));
-        counts && (change > least * self.size || self.steep(qdd, v, h))
-    }
-
-    /// The third of three evaluations: has the change grown to more than `least` of that from the first to the second, or is the step steep?
-    pub fn turns(&self, qdd: &[f64], v: &[f64], (h, least): (f64, f64)) -> bool {
-        let change = self.difference(qdd);
-        h * change > NOTHING * (1.0 + largest(v)) && (change > least * self.change || self.steep(qdd, v, h))
-    }
-
-    /// Does the change move a velocity by more than a share `STEEP` of itself?
-    fn steep(&self, qdd: &[f64], v: &[f64], h: f64) -> bool {
-        let pairs = self.last.iter().zip(qdd).zip(v);
-        pairs.into_iter().any(|((last, now), v)| h * (now - last).abs() > STEEP * (1.0 + v.abs()))
+        self.change = 0.0;
     }
 
     /// Notes the second evaluation.
@@ -67,9 +47,163 @@ impl Whirl {
         self.last.copy_from_slice(qdd);
     }
 
+    /// The third of three evaluations: has the change grown to more than `least` of that from the first to the second, or is the step steep?
+    pub fn turns(&self, qdd: &[f64], v: &[f64], (h, least): (f64, f64)) -> bool {
+        let change = self.difference(qdd);
+        let steep = || self.last.iter().zip(qdd).zip(v).any(|((last, now), v)| is_steep(now - last, *v, h));
+        h * change > NOTHING * (1.0 + largest(v)) && (change > least * self.change || steep())
+    }
+
     fn difference(&self, qdd: &[f64]) -> f64 {
         self.last.iter().zip(qdd).fold(0.0, |most: f64, (last, now)| most.max((now - last).abs()))
     }
+}
+
+/// What Euler's rule looks at: changes of the accelerations of each tree on the world from one step to the next.
+#[derive(Clone, Debug)]
+pub(super) struct Trees {
+    /// Of each body; of the world one past the last.
+    of_body: Vec<usize>,
+    /// Velocity coordinates that follow each other in one tree, and that tree.
+    runs: Vec<(Range<usize>, usize)>,
+    trees: Vec<Tree>,
+    /// Accelerations of the step before (nv), of trees that nothing touched in it.
+    last: Vec<f64>,
+    /// The same of all trees without contacts, which make them jump; not used if nothing can touch.
+    free: Vec<f64>,
+    known: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Tree {
+    /// The greatest change of an acceleration in it since the step before.
+    change: f64,
+    /// The greatest of such changes without contacts over 1 and the velocity, 1/s.
+    rate: f64,
+    /// Its greatest acceleration now.
+    now: f64,
+    /// Does a contact act on it now?
+    touched: bool,
+    past: Past,
+}
+
+/// What a tree keeps from step to step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Past {
+    /// The greatest acceleration of the last hundred steps or so: that of a swing is 0 twice in its period.
+    size: f64,
+    /// Did a contact act on it in the last step?
+    touched: bool,
+    /// Steps in a row that moved a velocity by more than `STEEP_IN_TOUCH`.
+    steep: u32,
+}
+
+impl Trees {
+    pub fn new(m: &Model) -> Self {
+        let forest = Forest::of(m);
+        let mut runs: Vec<(Range<usize>, usize)> = vec![];
+        for (body, b) in m.bodies.iter().enumerate().skip(1) {
+            let (at, tree) = (b.v..b.v + b.joint.nv(), forest.of_body[body]);
+            match runs.last_mut() {
+                Some((run, same)) if *same == tree && run.end == at.start => run.end = at.end,
+                _ => runs.push((at, tree)),
+            }
+        }
+        let trees = vec![Tree::default(); forest.count];
+        Self { of_body: forest.of_body, runs, trees, last: vec![0.0; m.nv], free: vec![0.0; m.nv], known: false }
+    }
+
+    pub fn forget(&mut self) {
+        self.known = false;
+        self.trees.fill(Tree::default());
+    }
+
+    /// A contact acts on this body in the present step.
+    pub fn touch(&mut self, body: usize) {
+        if let Some(tree) = self.trees.get_mut(self.of_body[body]) {
+            tree.touched = true;
+        }
+    }
+
+    /// Notes accelerations `qdd`, a step `h` after those before them, at velocities `v`; without contacts they would be `free`, which is empty
+    /// if nothing can touch. Is the change in a tree that nothing touches more than `least` of those that there have been, or is the
+    /// step steep in any?
+    pub fn grow(&mut self, (qdd, free): (&[f64], &[f64]), v: &[f64], (h, least): (f64, f64)) -> bool {
+        for (at, tree) in &self.runs {
+            let tree = &mut self.trees[*tree];
+            let (qdd, last, v) = (&qdd[at.clone()], &mut self.last[at.clone()], &v[at.clone()]);
+            match free.get(at.clone()) {
+                Some(free) => {
+                    tree.look_free(free, &self.free[at.clone()], v);
+                    self.free[at.clone()].copy_from_slice(free);
+                }
+                None => tree.look_free(qdd, last, v),
+            }
+            if !tree.touched {
+                tree.look(qdd, last);
+            }
+        }
+        let speed = |tree: usize| {
+            self.runs
+                .iter()
+                .filter(|run| run.1 == tree)
+                .fold(0.0, |most: f64, run| most.max(largest(&v[run.0.clone()])))
+        };
+        let mut grows = false;
+        for (i, tree) in self.trees.iter_mut().enumerate() {
+            grows |= tree.is_steep(h) || (tree.grows(least) && h * tree.change > NOTHING * (1.0 + speed(i)));
+            tree.end_step(h, self.known);
+        }
+        std::mem::replace(&mut self.known, true) && grows
+    }
+}
+
+impl Tree {
+    /// Notes accelerations without contacts.
+    fn look_free(&mut self, free: &[f64], last: &[f64], v: &[f64]) {
+        for ((now, last), v) in free.iter().zip(last).zip(v) {
+            let rate = (now - last).abs() / (1.0 + v.abs());
+            self.rate = if rate > self.rate { rate } else { self.rate };
+        }
+    }
+
+    /// Notes accelerations.
+    fn look(&mut self, qdd: &[f64], last: &mut [f64]) {
+        for (now, last) in qdd.iter().zip(last) {
+            let change = (now - *last).abs();
+            self.change = if change > self.change { change } else { self.change };
+            self.now = if now.abs() > self.now { now.abs() } else { self.now };
+            *last = *now;
+        }
+    }
+
+    /// Does a contact act on it, or did in the last step?
+    fn jumps(&self) -> bool {
+        self.touched || self.past.touched
+    }
+
+    fn grows(&self, least: f64) -> bool {
+        !self.jumps() && self.change > least * self.past.size
+    }
+
+    fn is_steep(&self, h: f64) -> bool {
+        match self.jumps() {
+            true => h * self.rate > STEEP_IN_TOUCH && self.past.steep + 1 >= IN_A_ROW,
+            false => h * self.rate > STEEP,
+        }
+    }
+
+    /// Of the first step nothing is `known` to compare it with.
+    fn end_step(&mut self, h: f64, known: bool) {
+        let steep = if known && h * self.rate > STEEP_IN_TOUCH { (self.past.steep + 1).min(IN_A_ROW) } else { 0 };
+        let size = if self.touched { 0.0 } else { self.now.max(FADES * self.past.size) };
+        *self = Self { past: Past { size, touched: self.touched, steep }, ..Self::default() };
+    }
+}
+
+/// Does the change move a velocity by more than a share `STEEP` of itself?
+fn is_steep(change: f64, v: f64, h: f64) -> bool {
+    h * change.abs() > STEEP * (1.0 + v.abs())
 }
 
 fn largest(v: &[f64]) -> f64 {

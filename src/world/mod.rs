@@ -35,7 +35,8 @@ pub use warnings::{Warning, WarningKind, Warnings};
 pub struct Stats {
     /// Steps made.
     pub steps: u64,
-    /// Steps of RK4 that fell back to the implicit midpoint rule, and steps of the extrapolation method whose rest did.
+    /// Steps of RK4 and Euler's rule that fell back to the implicit midpoint rule, and those of Euler's rule and the extrapolation method
+    /// whose rest did.
     pub fallback_steps: u64,
     /// Steps whose axis set did not settle within the iterations.
     pub unsettled_steps: u64,
