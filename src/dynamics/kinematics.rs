@@ -98,7 +98,9 @@ fn put(k: &mut Kinematics, (on, i): (usize, usize), (r, p): (impl Turn<f64>, V3<
     k.w[i] = r.tv(w0) + own.a;
     k.v[i] = r.tv(w0.cross_add(p, v0)) + own.l;
     k.p[i] = r0.mv(p) + k.p[on];
-    k.r[i] = M3::rows(r.tv(r0.r[0]), r.tv(r0.r[1]), r.tv(r0.r[2]));
+    // Zero is added because a −0 may come of products that are left out: so both ways have +0.
+    let o = V3::default();
+    k.r[i] = M3::rows(r.tv(r0.r[0]) + o, r.tv(r0.r[1]) + o, r.tv(r0.r[2]) + o);
 }
 
 /// Frames and velocities that know their state: to ask for the same again costs a comparison.

@@ -93,11 +93,13 @@ fn side_by_side(m: &Model, rows: &[Row], k: &mut Kinematics, (q, v): (&[f64], &[
 fn moved(parent: &Frame<X>, (r, p): (&M3<X>, V3<X>), (q, speed): (X, X)) -> Frame<X> {
     let o = X::of(0.0);
     let r = turned_z(r, q.sin_cos());
+    let turned = parent.r.mm(&r);
+    let o3 = V3::new(o, o, o);
     Frame {
         w: r.tv(parent.w) + V3::new(o, o, speed),
-        v: r.tv(parent.w.cross_add(p, parent.v)) + V3::new(o, o, o),
+        v: r.tv(parent.w.cross_add(p, parent.v)) + o3,
         p: parent.r.mv(p) + parent.p,
-        r: parent.r.mm(&r),
+        r: M3::rows(turned.r[0] + o3, turned.r[1] + o3, turned.r[2] + o3),
     }
 }
 
