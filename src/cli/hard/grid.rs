@@ -149,7 +149,7 @@ impl Entry {
                     wrong.push(format!(
                         "{case} with {} at {} ms: {}: {name}: {error:.2e} of {allowed:.2e}",
                         row.column.name(),
-                        *step as f64 * 1e-6,
+                        *step as f64 / 1e6,
                         verdict.name()
                     ));
                 }
