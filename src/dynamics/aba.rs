@@ -10,13 +10,11 @@ use super::ball::{Ball, BallIn, eliminate_ball, eliminate_floating};
 use super::crba::Composite;
 use super::damping::{Damped, resist};
 use super::eliminate::{eliminate_axis, eliminate_linear_z, revolute, revolute_root};
-use super::joint::{
-    axis_z, bias, joint_transform, joint_velocity, turned, turned_along, turned_outward, universal_axis,
-};
+use super::joint::{axis_z, bias, carried, joint_transform, joint_velocity, turned, turned_outward, universal_axis};
 use super::limbs::{Limbs, hybrid_limbs};
-use super::turn::Planar;
+use super::turn::with_turn;
 use crate::math::{Fma, M3, Real, V3};
-use crate::model::{Along, Body, JointType, Model};
+use crate::model::{Body, JointType, Model};
 
 /// Frame and motion of a body; its velocity gives way to its acceleration in the last pass.
 #[derive(Clone, Copy, Debug, Default)]
@@ -244,17 +242,12 @@ pub(crate) fn velocities<T: Real>(m: &Model, ws: &mut Workspace<T>, q: &[T], v: 
 #[inline(always)]
 pub(super) fn moved<T: Real>(b: &Body, q: &[T], v: &[T], parent: &Kin<T>) -> Kin<T> {
     if b.joint == JointType::Revolute {
-        let (at, own, parent) = ((&M3::of(&b.tree_r), V3::of(b.tree_p)), (q[b.q], v[b.v]), (parent.w, parent.v));
-        return match b.along {
-            Some(Along::X) => turned_along::<T, 0>(at, own, parent),
-            Some(Along::Y) => turned_along::<T, 1>(at, own, parent),
-            Some(Along::Z) => turned_along::<T, 2>(at, own, parent),
-            None => turned(at, own, parent),
-        };
+        let (at_rest, p, own) = (&M3::of(&b.tree_r), V3::of(b.tree_p), (q[b.q], v[b.v]));
+        return with_turn!(b.along, at_rest, r => turned((r, p), own, (parent.w, parent.v)));
     }
     let (r, p) = joint_transform(b, q);
-    let own = joint_velocity(b, q, v);
-    Kin { r, w: r.tv(parent.w) + own.a, v: r.tv(parent.w.cross_add(p, parent.v)) + own.l }
+    let (w, v) = carried((&r, p), (parent.w, parent.v), joint_velocity(b, q, v));
+    Kin { r, w, v }
 }
 
 /// Second pass, one body: eliminate its joint from what it has collected; that becomes what its parent gets, unless that is
@@ -284,12 +277,7 @@ pub(super) fn inward<T: Real, const HYBRID: bool>(
             revolute_root(k, (&mut ws.dof[b.v], t));
         } else {
             let (p, own, out) = (V3::of(b.tree_p), (kin.w, kin.v), (&mut ws.dof[b.v], t));
-            *k = match b.along {
-                Some(Along::X) => revolute(k, (&Planar::<T, 0>::of(&kin.r), p), own, v[b.v], out),
-                Some(Along::Y) => revolute(k, (&Planar::<T, 1>::of(&kin.r), p), own, v[b.v], out),
-                Some(Along::Z) => revolute(k, (&Planar::<T, 2>::of(&kin.r), p), own, v[b.v], out),
-                None => revolute(k, (&kin.r, p), own, v[b.v], out),
-            };
+            *k = with_turn!(b.along, &kin.r, r => revolute(k, (r, p), own, v[b.v], out));
         }
         return;
     }
@@ -340,12 +328,7 @@ pub(super) fn outward<T: Real, const HYBRID: bool>(
     let parent = ws.kin[b.parent];
     if b.joint == JointType::Revolute {
         let (p, own, parent) = (V3::of(b.tree_p), (kin.w, kin.v), (parent.w, parent.v));
-        let (mut a, l) = match b.along {
-            Some(Along::X) => turned_outward((&Planar::<T, 0>::of(&kin.r), p), v[b.v], own, parent),
-            Some(Along::Y) => turned_outward((&Planar::<T, 1>::of(&kin.r), p), v[b.v], own, parent),
-            Some(Along::Z) => turned_outward((&Planar::<T, 2>::of(&kin.r), p), v[b.v], own, parent),
-            None => turned_outward((&kin.r, p), v[b.v], own, parent),
-        };
+        let (mut a, l) = with_turn!(b.along, &kin.r, r => turned_outward((r, p), v[b.v], own, parent));
         a.z += scalar_out::<T, HYBRID>(ws, b.v, (a, l), qdd);
         (ws.kin[i].w, ws.kin[i].v) = (a, l);
         return;

@@ -2,7 +2,7 @@
 
 use super::layout::{CHUNK, Layout};
 use super::{Dof, Push, Response, Workspace, aba::joint_transform_p, joint::universal_axis};
-use crate::math::{M3, Real, V3};
+use crate::math::{M3, Real, V3, wide};
 use crate::model::{JointType, Model};
 
 /// One component of six forces.
@@ -36,19 +36,11 @@ impl Columns {
     /// [`Layout::chunks`] or [`Layout::join`]; [`CHUNK`] numbers each in `out`).
     pub fn combine(&self, push: &Push, ids: &[u32], out: &mut [f64]) {
         debug_assert_eq!(push.body, self.body);
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has just been asked for it.
-            return unsafe { self.combine_wide(push, ids, out) };
-        }
-        self.combine_any(push, ids, out);
-    }
-
-    /// [`Columns::combine_any`] in wider registers: the same operations, the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn combine_wide(&self, push: &Push, ids: &[u32], out: &mut [f64]) {
-        self.combine_any(push, ids, out);
+        wide!(
+            Self::combine_any,
+            Columns::combine_any,
+            (this: &Columns = self, push: &Push = push, ids: &[u32] = ids, out: &mut [f64] = out)
+        );
     }
 
     #[inline(always)]

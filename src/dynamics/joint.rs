@@ -2,7 +2,7 @@
 
 use super::aba::Kin;
 use super::articulated::Spatial;
-use super::turn::{Planar, Turn};
+use super::turn::Turn;
 use crate::math::{M3, Real, V3};
 use crate::model::{Body, JointType, rotation};
 
@@ -99,23 +99,20 @@ pub(crate) fn bias<T: Real>(b: &Body, q: &[T], v: &[T], (w, l): (V3<T>, V3<T>)) 
     }
 }
 
-/// Frame and velocity of a body that turns about z: its frame at 0, its angle and speed, its parent's velocity.
+/// Velocity of a body, from its frame in its parent's, its parent's velocity, and its joint's own.
 #[inline(always)]
-pub(super) fn turned<T: Real>((r, p): (&M3<T>, V3<T>), (q, s): (T, T), (pw, pv): (V3<T>, V3<T>)) -> Kin<T> {
-    let r = turned_z(r, q.sin_cos());
-    let mut w = r.tv(pw);
-    w.z += s;
-    Kin { r, w, v: r.tv(pw.cross_add(p, pv)) }
+pub(super) fn carried<T: Real>(
+    (r, p): (&impl Turn<T>, V3<T>),
+    (w, v): (V3<T>, V3<T>),
+    own: Spatial<T>,
+) -> (V3<T>, V3<T>) {
+    (r.tv(w) + own.a, r.tv(w.cross_add(p, v)) + own.l)
 }
 
-/// The same of one whose joint lies along the `K`th axis of its parent's frame.
+/// Frame and velocity of a body that turns about z: its frame at 0, its angle and speed, its parent's velocity.
 #[inline(always)]
-pub(super) fn turned_along<T: Real, const K: usize>(
-    (r, p): (&M3<T>, V3<T>),
-    (q, s): (T, T),
-    (pw, pv): (V3<T>, V3<T>),
-) -> Kin<T> {
-    let r = Planar::<T, K>::of(r).turned_z(q.sin_cos());
+pub(super) fn turned<T: Real>((r, p): (&impl Turn<T>, V3<T>), (q, s): (T, T), (pw, pv): (V3<T>, V3<T>)) -> Kin<T> {
+    let r = r.turned_z(q.sin_cos());
     let mut w = r.tv(pw);
     w.z += s;
     Kin { r: r.matrix(), w, v: r.tv(pw.cross_add(p, pv)) }

@@ -1,11 +1,11 @@
 //! Where the bodies are and how they move, in the world.
 
 use super::articulated::Spatial;
-use super::joint::{joint_transform, joint_velocity, turned_x, turned_z};
+use super::joint::{carried, joint_transform, joint_velocity, turned_x, turned_z};
 use super::limbs::Frames;
-use super::turn::{Planar, Turn};
+use super::turn::{Turn, with_turn};
 use crate::math::{M3, Mat3, Pose, Quat, Real, Twist, V3, Vec3};
-use crate::model::{Along, JointType, LinkFrame, Model};
+use crate::model::{JointType, LinkFrame, Model};
 use nalgebra::{Rotation3, Translation3, UnitQuaternion};
 use std::sync::Arc;
 
@@ -45,6 +45,12 @@ impl Kinematics {
         self.v.copy_from_slice(&other.v);
     }
 
+    #[inline(always)]
+    fn put(&mut self, i: usize, on: usize, at: (&impl Turn<f64>, V3<f64>), own: Spatial<f64>) {
+        let f = Frame { r: self.r[on], p: self.p[on], w: self.w[on], v: self.v[on] }.carry(at, own);
+        (self.r[i], self.p[i], self.w[i], self.v[i]) = (f.r, f.p, f.w, f.v);
+    }
+
     /// Velocity of a body at a point of the world, along the world's axes, m/s.
     #[inline(always)]
     pub fn velocity_at(&self, body: usize, point: V3<f64>) -> V3<f64> {
@@ -79,28 +85,32 @@ pub fn kinematics_of(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), bo
 fn one(m: &Model, k: &mut Kinematics, (q, v): (&[f64], &[f64]), i: usize) {
     let b = &m.bodies[i];
     if b.joint == JointType::Revolute {
-        let turn = Real::sin_cos(q[b.q]);
-        let spin = Spatial { a: V3::new(0.0, 0.0, v[b.v]), l: V3::default() };
-        return match b.along {
-            Some(Along::X) => put(k, (b.parent, i), (Planar::<f64, 0>::of(&b.tree_r).turned_z(turn), b.tree_p), spin),
-            Some(Along::Y) => put(k, (b.parent, i), (Planar::<f64, 1>::of(&b.tree_r).turned_z(turn), b.tree_p), spin),
-            Some(Along::Z) => put(k, (b.parent, i), (Planar::<f64, 2>::of(&b.tree_r).turned_z(turn), b.tree_p), spin),
-            None => put(k, (b.parent, i), (turned_z(&b.tree_r, turn), b.tree_p), spin),
-        };
+        let (turn, spin) = (Real::sin_cos(q[b.q]), Spatial { a: V3::new(0.0, 0.0, v[b.v]), l: V3::default() });
+        return with_turn!(b.along, &b.tree_r, r => k.put(i, b.parent, (&r.turned_z(turn), b.tree_p), spin));
     }
-    put(k, (b.parent, i), joint_transform(b, q), joint_velocity(b, q, v));
+    let (r, p) = joint_transform(b, q);
+    k.put(i, b.parent, (&r, p), joint_velocity(b, q, v));
 }
 
-/// A body on its parent: its frame in the parent's, and its joint's own velocity.
-#[inline(always)]
-fn put(k: &mut Kinematics, (on, i): (usize, usize), (r, p): (impl Turn<f64>, V3<f64>), own: Spatial<f64>) {
-    let (w0, v0, r0) = (k.w[on], k.v[on], k.r[on]);
-    k.w[i] = r.tv(w0) + own.a;
-    k.v[i] = r.tv(w0.cross_add(p, v0)) + own.l;
-    k.p[i] = r0.mv(p) + k.p[on];
-    // Zero is added because a −0 may come of products that are left out: so both ways have +0.
-    let o = V3::default();
-    k.r[i] = M3::rows(r.tv(r0.r[0]) + o, r.tv(r0.r[1]) + o, r.tv(r0.r[2]) + o);
+/// What [`Kinematics`] holds of a body.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Frame<T> {
+    pub r: M3<T>,
+    pub p: V3<T>,
+    pub w: V3<T>,
+    pub v: V3<T>,
+}
+
+impl<T: Real> Frame<T> {
+    /// Of a body on its parent: its frame in the parent's, and its joint's own velocity.
+    #[inline(always)]
+    pub fn carry(&self, (r, p): (&impl Turn<T>, V3<T>), own: Spatial<T>) -> Self {
+        let (w, v) = carried((r, p), (self.w, self.v), own);
+        // Zero is added because a −0 may come of products that are left out: so all ways have +0.
+        let o = V3::default();
+        let [x, y, z] = self.r.r;
+        Self { r: M3::rows(r.tv(x) + o, r.tv(y) + o, r.tv(z) + o), p: self.r.mv(p) + self.p, w, v }
+    }
 }
 
 /// Frames and velocities that know their state: to ask for the same again costs a comparison.

@@ -4,6 +4,7 @@
 //! (a zero may change its sign). The zeros are more than a quarter of the arithmetic of a hinge.
 
 use super::articulated::Art;
+use super::joint::turned_z;
 use crate::math::{M3, Real, S3, V3};
 
 /// Rotation `R` from the child's axes to the parent's.
@@ -14,6 +15,10 @@ pub(crate) trait Turn<T: Real>: Copy {
     fn tv(&self, v: V3<T>) -> V3<T>;
     /// `R S Rᵀ`.
     fn rotated(&self, s: &S3<T>) -> S3<T>;
+    /// `R Rz(q)`, of its sine and cosine.
+    fn turned_z(&self, turn: (T, T)) -> Self;
+    /// All its numbers.
+    fn matrix(&self) -> M3<T>;
     /// `R J Rᵀ` of a J whose z row and column are zero, `R [h0; h1; 0] Rᵀ`, and M, about an origin that lies at −p.
     fn flat(&self, j: [T; 3], h: [V3<T>; 2], m: S3<T>, p: V3<T>) -> Art<T>;
 }
@@ -32,6 +37,16 @@ impl<T: Real> Turn<T> for M3<T> {
     #[inline(always)]
     fn rotated(&self, s: &S3<T>) -> S3<T> {
         S3::rotated(s, self)
+    }
+
+    #[inline(always)]
+    fn turned_z(&self, turn: (T, T)) -> Self {
+        turned_z(self, turn)
+    }
+
+    #[inline(always)]
+    fn matrix(&self) -> M3<T> {
+        *self
     }
 
     #[inline(always)]
@@ -55,6 +70,32 @@ impl<T: Real> Turn<T> for M3<T> {
         Art { j, h, m: self.rotated(&m) }.moved(p)
     }
 }
+
+/// `$use`, with `$turn` the rotation `$r` (an [`M3`]) of a hinge that lies along this axis of its parent's frame, if along any.
+macro_rules! with_turn {
+    ($along:expr, $r:expr, $turn:ident => $use:expr) => {
+        match $along {
+            Some($crate::model::Along::X) => {
+                let $turn = &$crate::dynamics::turn::Planar::<_, 0>::of($r);
+                $use
+            }
+            Some($crate::model::Along::Y) => {
+                let $turn = &$crate::dynamics::turn::Planar::<_, 1>::of($r);
+                $use
+            }
+            Some($crate::model::Along::Z) => {
+                let $turn = &$crate::dynamics::turn::Planar::<_, 2>::of($r);
+                $use
+            }
+            None => {
+                let $turn = $r;
+                $use
+            }
+        }
+    };
+}
+
+pub(crate) use with_turn;
 
 /// A rotation whose column z is ± the `K`th axis of the parent: of each other row the first two numbers, in ascending order of
 /// the rows, and the sign.
@@ -116,27 +157,6 @@ impl<T: Real, const K: usize> Planar<T, K> {
         Self { first: Pair::of(r.r[Self::FIRST]), second: Pair::of(r.r[Self::SECOND]), sign: r.r[K].z }
     }
 
-    #[inline(always)]
-    pub fn matrix(self) -> M3<T> {
-        let o = T::of(0.0);
-        let (first, second, along) = (
-            V3::new(self.first.x, self.first.y, o),
-            V3::new(self.second.x, self.second.y, o),
-            V3::new(o, o, self.sign),
-        );
-        match K {
-            0 => M3::rows(along, first, second),
-            1 => M3::rows(first, along, second),
-            _ => M3::rows(first, second, along),
-        }
-    }
-
-    /// `R Rz(q)`.
-    #[inline(always)]
-    pub fn turned_z(self, (s, c): (T, T)) -> Self {
-        Self { first: self.first.turned_z(s, c), second: self.second.turned_z(s, c), sign: self.sign }
-    }
-
     /// A symmetric matrix of the parent: (first, first), (first, second), (second, second); along the hinge with first, second
     /// and itself.
     #[inline(always)]
@@ -180,6 +200,26 @@ impl<T: Real, const K: usize> Turn<T> for Planar<T, K> {
         let (f, g) = (a.through(s), b.through(s));
         let flat = [a.dot(f.x, f.y), b.dot(f.x, f.y), b.dot(g.x, g.y)];
         Self::symmetric(flat, [f.z * self.sign, g.z * self.sign, s.zz])
+    }
+
+    #[inline(always)]
+    fn turned_z(&self, (s, c): (T, T)) -> Self {
+        Self { first: self.first.turned_z(s, c), second: self.second.turned_z(s, c), sign: self.sign }
+    }
+
+    #[inline(always)]
+    fn matrix(&self) -> M3<T> {
+        let o = T::of(0.0);
+        let (first, second, along) = (
+            V3::new(self.first.x, self.first.y, o),
+            V3::new(self.second.x, self.second.y, o),
+            V3::new(o, o, self.sign),
+        );
+        match K {
+            0 => M3::rows(along, first, second),
+            1 => M3::rows(first, along, second),
+            _ => M3::rows(first, second, along),
+        }
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Velocities of bodies whose frames are known: without sines and cosines.
 
 use super::aba::joint_transform_p;
-use super::joint::joint_velocity;
+use super::joint::{carried, joint_velocity};
 use super::{Kinematics, Workspace};
 use crate::model::Model;
 
@@ -17,10 +17,7 @@ pub fn velocities_of(
     for i in bodies.iter().copied() {
         let b = &m.bodies[i];
         let (r, p) = (&ws.kin[i].r, joint_transform_p(b, q));
-        let own = joint_velocity(b, q, v);
-        let (w, l) = (k.w[b.parent], k.v[b.parent]);
-        k.w[i] = r.tv(w) + own.a;
-        k.v[i] = r.tv(w.cross_add(p, l)) + own.l;
+        (k.w[i], k.v[i]) = carried((r, p), (k.w[b.parent], k.v[b.parent]), joint_velocity(b, q, v));
         (k.r[i], k.p[i]) = (at.r[i], at.p[i]);
     }
 }

@@ -240,7 +240,7 @@ fn refuse<T>(kind: RefusalKind, reason: String) -> Result<T, Refusal> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     const AXES: [(&str, bool); 3] = [("hip", true), ("knee", true), ("fixed_mode", false)];
@@ -249,7 +249,7 @@ mod tests {
         vec![AxisCommand::servo(0.1), AxisCommand::torque(2.0), AxisCommand::IDLE]
     }
 
-    fn joint(name: &[&str], position: &[f64], velocity: &[f64], effort: &[f64]) -> JointState {
+    pub fn joint(name: &[&str], position: &[f64], velocity: &[f64], effort: &[f64]) -> JointState {
         JointState {
             name: name.iter().map(ToString::to_string).collect(),
             position: position.to_vec(),

@@ -154,6 +154,7 @@ impl ControlStates {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ros::commands::tests::joint as message;
 
     const P: [bool; 3] = [true, false, false];
     const V: [bool; 3] = [false, true, false];
@@ -177,16 +178,6 @@ mod tests {
                 joint("eye", [false; 3]),
             ],
             max_torque: vec![],
-        }
-    }
-
-    fn message(name: &[&str], position: &[f64], velocity: &[f64], effort: &[f64]) -> JointState {
-        JointState {
-            name: name.iter().map(ToString::to_string).collect(),
-            position: position.to_vec(),
-            velocity: velocity.to_vec(),
-            effort: effort.to_vec(),
-            ..JointState::default()
         }
     }
 

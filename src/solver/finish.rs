@@ -9,7 +9,7 @@ use super::dense::{Cholesky, Lu, dot};
 use super::inner::Inner;
 use super::rows::{FINISH_ROWS, Kind, NEARLY, Rows};
 use super::way::{Way, length, shorten};
-use crate::math::{Lane, Lanes4};
+use crate::math::{Lane, Lanes4, wide};
 
 /// Linearisations in one finish of many rows.
 const TRIES: usize = 3;
@@ -128,19 +128,7 @@ impl Scratch {
     /// Solves the linearised problem of n rows for the unknowns, refined once: so the softness only counts where nothing
     /// else does.
     fn solve(&mut self, n: usize) {
-        #[cfg(target_arch = "x86_64")]
-        if crate::math::X4::<false>::is_available() {
-            // SAFETY: the machine has just been asked for both features.
-            return unsafe { self.solve_wide(n) };
-        }
-        self.solve_any::<Lanes4>(n);
-    }
-
-    /// [`Scratch::solve_any`] in wider registers: the same operations, the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn solve_wide(&mut self, n: usize) {
-        self.solve_any::<crate::math::X4<false>>(n);
+        wide!(Self::solve_any::<Lanes4>, Scratch::solve_any::<crate::math::X4<false>>, (this: &mut Scratch = self, n: usize = n));
     }
 
     #[inline(always)]

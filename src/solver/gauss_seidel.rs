@@ -2,6 +2,7 @@
 
 use super::inner::{Inner, within_disc};
 use super::rows::{Block, CHUNK, Kind, Row, Rows};
+use crate::math::wide;
 
 /// What a visit reads and writes besides its block.
 struct Field<'a> {
@@ -22,19 +23,7 @@ impl Rows {
     /// The largest violation of any block as a velocity: how far a step of projected descent would still move it,
     /// `|x − P(x − ρ u)| / ρ`.
     pub fn residual(&self) -> f64 {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has just been asked for it.
-            return unsafe { self.residual_wide() };
-        }
-        self.residual_any()
-    }
-
-    /// [`Rows::residual_any`] in wider registers: the same operations, the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn residual_wide(&self) -> f64 {
-        self.residual_any()
+        wide!(Self::residual_any, Rows::residual_any, (this: &Rows = self) -> f64)
     }
 
     #[inline(always)]

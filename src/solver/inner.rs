@@ -2,6 +2,7 @@
 
 use super::cone::{ConeBlock, Plane, disc};
 use super::rows::{Block, CHUNK, Rows};
+use crate::math::wide;
 
 /// A visit of a block stays near what it had before, by this share of its trace: that moves no solution, and a block that is
 /// held in some direction has one.
@@ -27,19 +28,7 @@ impl Rows {
     }
 
     fn inner(&self, block: usize) -> Inner {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has just been asked for it.
-            return unsafe { self.inner_wide(block) };
-        }
-        self.inner_any(block)
-    }
-
-    /// [`Rows::inner_any`] in wider registers: the same operations, the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn inner_wide(&self, block: usize) -> Inner {
-        self.inner_any(block)
+        wide!(Self::inner_any, Rows::inner_any, (this: &Rows = self, block: usize = block) -> Inner)
     }
 
     #[inline(always)]

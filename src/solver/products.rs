@@ -1,24 +1,12 @@
 //! Products of rows, `Y Yᵀ`: how an impulse of one moves another.
 
 use super::rows::{Block, CHUNK, Rows};
-use crate::math::{Lane, Lanes4};
+use crate::math::{Lane, Lanes4, wide};
 
 impl Rows {
     /// `Y Yᵀ + R`.
     pub(super) fn fill(&self, a: &mut [f64]) {
-        #[cfg(target_arch = "x86_64")]
-        if crate::math::X4::<false>::is_available() {
-            // SAFETY: the machine has just been asked for both features.
-            return unsafe { self.fill_wide(a) };
-        }
-        self.fill_any::<Lanes4>(a);
-    }
-
-    /// [`Rows::fill_any`] in wider registers: the same operations, the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn fill_wide(&self, a: &mut [f64]) {
-        self.fill_any::<crate::math::X4<false>>(a);
+        wide!(Self::fill_any::<Lanes4>, Rows::fill_any::<crate::math::X4<false>>, (this: &Rows = self, a: &mut [f64] = a));
     }
 
     #[inline(always)]

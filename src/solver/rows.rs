@@ -1,6 +1,7 @@
 //! Constraint rows in factor space: each holds its response y; its velocity is `bias + y·w`, its impulse x moves w by y x.
 
 use super::inner::Inner;
+use crate::math::wide;
 
 /// Numbers in a chunk of w.
 pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
@@ -233,19 +234,7 @@ impl Rows {
     }
 
     fn gather_into(&self, w: &mut [f64]) {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has just been asked for it.
-            return unsafe { self.gather_wide(w) };
-        }
-        self.gather_any(w);
-    }
-
-    /// [`Rows::gather_any`] in wider registers: the same operations, the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn gather_wide(&self, w: &mut [f64]) {
-        self.gather_any(w);
+        wide!(Self::gather_any, Rows::gather_any, (this: &Rows = self, w: &mut [f64] = w));
     }
 
     #[inline(always)]

@@ -3,7 +3,9 @@
 use super::schedule::{Schedule, Step, frames};
 use super::{LANES, X, pick, single};
 use crate::dynamics::Kinematics;
+use crate::dynamics::articulated::Spatial;
 use crate::dynamics::joint::turned_z;
+use crate::dynamics::kinematics::Frame;
 use crate::math::{M3, Real, V3};
 use crate::model::Model;
 
@@ -30,15 +32,6 @@ struct Row {
     /// All their parents are in the same lane of the row before.
     straight: bool,
     on_world: bool,
-}
-
-/// What [`Kinematics`] holds of a body.
-#[derive(Clone, Copy, Default)]
-struct Frame<T> {
-    r: M3<T>,
-    p: V3<T>,
-    w: V3<T>,
-    v: V3<T>,
 }
 
 impl Frames {
@@ -88,19 +81,11 @@ fn side_by_side(m: &Model, rows: &[Row], k: &mut Kinematics, (q, v): (&[f64], &[
     }
 }
 
-/// The operations of [`super::super::kinematics`] on a revolute joint, in their order.
+/// A revolute joint, as in [`super::super::kinematics`].
 #[inline(always)]
 fn moved(parent: &Frame<X>, (r, p): (&M3<X>, V3<X>), (q, speed): (X, X)) -> Frame<X> {
     let o = X::of(0.0);
-    let r = turned_z(r, q.sin_cos());
-    let turned = parent.r.mm(&r);
-    let o3 = V3::new(o, o, o);
-    Frame {
-        w: r.tv(parent.w) + V3::new(o, o, speed),
-        v: r.tv(parent.w.cross_add(p, parent.v)) + o3,
-        p: parent.r.mv(p) + parent.p,
-        r: M3::rows(turned.r[0] + o3, turned.r[1] + o3, turned.r[2] + o3),
-    }
+    parent.carry((&turned_z(r, q.sin_cos()), p), Spatial { a: V3::new(o, o, speed), l: V3::default() })
 }
 
 #[inline(always)]
