@@ -173,9 +173,13 @@ def test_swing_leg_swings_the_leg_and_writes_the_twist(start, tmp_path):
     assert client.returncode == 0, said
     [written] = tmp_path.iterdir()
     assert written.stem == "swing" and written.stat().st_size > 10_000 and written.name in said
-    hip = [s.position[s.name.index("left_hip_pitch")] for s in list(bench.states)]
-    forward = next(i for i, q in enumerate(hip) if q < -0.5)
-    assert max(hip[forward:]) > 0.0, "the leg swings forward, and back behind the trunk"
+
+    def swung():
+        hip = [s.position[s.name.index("left_hip_pitch")] for s in list(bench.states)]
+        forward = next((i for i, q in enumerate(hip) if q < -0.5), len(hip))
+        return max(hip[forward:], default=-1.0) > 0.0
+
+    wait_until(swung, what="the leg to swing forward, and back behind the trunk")
 
 
 # Launch files, with an imitation of what they use of `launch`
