@@ -2,7 +2,7 @@
 
 import re
 
-from realnoid.srv import SetJointAngles
+from realnoid.srv import Record, SetJointAngles
 from simulation_interfaces.msg import SimulationState
 from simulation_interfaces.srv import DeleteEntity, ResetSimulation, SetEntityState, SetSimulationState, StepSimulation
 
@@ -15,6 +15,7 @@ REFUSED = {
     SetEntityState: dict(entity="nobody"),
     DeleteEntity: dict(entity="nobody"),
     SetJointAngles: dict(name=[]),
+    Record: dict(start=True, folder="/"),
 }
 
 
@@ -29,10 +30,10 @@ class Services:
         service = self.namespace + (service or re.sub(r"(?<!^)(?=[A-Z])", "_", kind.__name__).lower())
         if service not in self.clients:
             client = self.clients[service] = self.bench.probe.node.create_client(kind, service)
-            assert client.wait_for_service(15.0), service
+            assert client.wait_for_service(30.0), service
             if kind in REFUSED:
-                self.bench.probe.call(lambda: client.call_async(kind.Request(**REFUSED[kind])), timeout=10)
+                self.bench.probe.call(lambda: client.call_async(kind.Request(**REFUSED[kind])))
         return lambda: self.clients[service].call_async(kind.Request(**fields))
 
-    def __call__(self, kind, service=None, timeout=10.0, **fields):
-        return self.bench.probe.call(self.start(kind, service, **fields), timeout=timeout)
+    def __call__(self, kind, service=None, timeout=30.0, **fields):
+        return self.bench.probe.call(self.start(kind, service, **fields), timeout=timeout, twice=kind not in REFUSED)

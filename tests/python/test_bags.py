@@ -241,7 +241,7 @@ def test_a_run_that_is_stopped_leaves_a_complete_bag(tmp_path, by):
     try:
         wait_until(lambda: bag.exists() and bag.stat().st_size > 1_000_000, what="the first megabyte")
         process.send_signal(by)
-        output, _ = process.communicate(timeout=10)
+        output, _ = process.communicate(timeout=30)
     finally:
         process.kill()
     summary = json.loads(output)

@@ -47,12 +47,14 @@ def resident(pid):
 def test_a_node_that_is_restarted_is_heard_by_a_client_that_was_there_before(bench):
     wait_until(lambda: len(bench.states) > 500, what="states")
     bench.simulator.stop()
+    bench.settled()
     description = bench.probe.listen(String, "robot_description", LATCHED)
-    before = len(bench.states)
+    before, began = len(bench.states), time.monotonic()
     bench.simulator = Simulator(domain=bench.domain)
-    wait_until(lambda: len(bench.states) > before + 500, timeout=10, what="states of the second node")
+    wait_until(lambda: len(bench.states) > before, what="the second node")
+    assert stamps(bench.states[before:])[0] < (time.monotonic() - began) * 1e9, "its time began anew"
+    wait_until(lambda: len(bench.states) > before + 500, what="states of the second node")
     new = stamps(bench.states[before:])
-    assert new[0] < 5 * 10**9, "its time began anew"
     assert all(b - a == INTERVAL for a, b in zip(new, new[1:])), "nothing is lost between its first state and the last"
     wait_until(lambda: description, what="its description")
     publisher = bench.probe.publisher(JointState, "joint_command")
@@ -83,17 +85,17 @@ def test_a_subscriber_that_stands_still_costs_the_others_nothing(start):
     try:
         assert listener.stdout.readline(), "it listens"
         # The history of every topic (1000 deep) fills up first.
-        wait_until(lambda: stamps(bench.states[-1:])[0] > 4 * 10**9, timeout=20, what="four seconds")
+        wait_until(lambda: stamps(bench.states[-1:])[0] > 4 * 10**9, what="four seconds")
         before, pid = len(bench.states), bench.simulator.process.pid
         memory = resident(pid)
         listener.send_signal(signal.SIGSTOP)
         stopped = time.monotonic()
         wait_until(lambda: time.monotonic() - stopped > 5.0, timeout=10, what="five seconds")
-        # 5000 states of 1.7 kB are kept for it, 8.5 MB, and let go when it has read them.
-        assert resident(pid) - memory < 12.0, "nothing but what it has not read is kept"
+        # 5000 states of 1.7 kB are kept for it, 8.5 MB, and let go when it has read them; more if it was more than five seconds.
+        assert resident(pid) - memory < 3.5 + 1.7e-3 * max(len(bench.states) - before, 5000), "nothing but what it has not read is kept"
         listener.send_signal(signal.SIGCONT)
         resumed = stamps(bench.states[-1:])[0] // 10**9
-        wait_until(lambda: int(listener.stdout.readline()) >= resumed, timeout=10, what="it hears again")
+        wait_until(lambda: int(listener.stdout.readline()) >= resumed, what="it hears again")
         seen = stamps(bench.states[before:])
         assert len(seen) > 4500 and all(b - a == INTERVAL for a, b in zip(seen, seen[1:])), "nobody else loses a state"
         assert bench.count("real time", "deadline set anew") == "0" and bench.count("real time", "dropped snapshots") == "0"

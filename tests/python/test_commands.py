@@ -26,8 +26,11 @@ def test_every_axis_holds_its_initial_position_at_start(bench):
 @pytest.mark.parametrize("torque", [0.4, -0.4])
 def test_effort_command_turns_the_axis_its_way_and_is_reported(bench, torque):
     bench.probe.publisher(Float64MultiArray, "effort_command").publish(array(torque, 0.0, 0.0))
-    wait_until(lambda: bench.axis("hip")[0] * torque > 0.02, what="the hip to turn")
-    position, velocity, effort = bench.axis("hip")
+    # The first such state: later ones are at the stop.
+    turned = lambda: next((s for s in list(bench.states) if s.position[0] * torque > 0.02), None)
+    state = wait_until(turned, what="the hip to turn")
+    assert state.name[0] == "hip"
+    velocity, effort = state.velocity[0], state.effort[0]
     assert velocity * torque > 0
     assert 0 < effort / torque <= 1 + 1e-9, "torque on the line from applied torque at rest to zero at no-load speed"
 
@@ -88,7 +91,7 @@ def test_each_bad_command_is_refused_whole_counted_and_said_once(bench):
     wait_until(lambda: sum(counted().values()) == total, what=f"{total} refusals")
     assert counted() == expected
     for topic, kind in expected:
-        said = bench.logged(f"{topic} refused, {kind}")
+        said = wait_until(lambda: bench.logged(f"{topic} refused, {kind}"), what=f"the log of {topic}, {kind}")
         assert len(said) == 1, f"{topic}, {kind}: said {len(said)} times"
         assert len(said[0]) > len(f"{topic} refused, {kind}: "), "with its reason"
     assert all(bench.count("commands", f"{topic} accepted") == "0" for topic in publishers)

@@ -4,6 +4,7 @@ import math
 import re
 import time
 
+import pytest
 from conftest import HERE, wait_until
 from diagnostic_msgs.msg import DiagnosticStatus
 from sensor_msgs.msg import JointState
@@ -36,8 +37,9 @@ def test_every_part_is_reported_once_with_the_robot_as_hardware(bench):
     wait_until(lambda: float(part(bench, "real time")[1]["step time max [us]"]) > 0, what="step times")
 
 
+@pytest.mark.alone
 def test_reports_are_a_second_apart(bench):
-    wait_until(lambda: len(bench.diagnostics) >= 4, timeout=8, what="four reports")
+    wait_until(lambda: len(bench.diagnostics) >= 4, what="four reports")
     stamps = [m.header.stamp.sec + 1e-9 * m.header.stamp.nanosec for m in bench.diagnostics[:4]]
     # Stamps are simulated time; the pace is real time. The machine may be late, but no report is left out.
     assert all(0.5 < b - a < 1.5 for a, b in zip(stamps, stamps[1:])), stamps
@@ -61,9 +63,10 @@ def test_the_error_is_estimated_on_request(bench):
     named = lambda: [s for s in bench.diagnostics[-1].status if s.name.endswith(": error")]
     assert not named()
     assert all(r.successful for r in bench.probe.set(client, estimate_error=True, accuracy=1e-8, integrator="extrapolation"))
-    told = wait_until(named, what="an estimate")[0]
-    figures = {v.key: v.value for v in told.values}
-    assert int(figures["intervals estimated"]) > 0 and float(figures["time per estimate [µs]"]) > 0
+    # It may begin just before a report.
+    told = lambda: next(({v.key: v.value for v in s.values} for s in named()), {})
+    figures = wait_until(lambda: (f := told()) and int(f["intervals estimated"]) > 0 and f, what="an estimate")
+    assert float(figures["time per estimate [µs]"]) > 0
     assert 0 <= float(figures["largest position error of an interval [rad or m]"]) < 1e-6
     assert bench.probe.set(client, estimate_error=False)[0].successful
     wait_until(lambda: not named(), what="its end")
@@ -94,22 +97,24 @@ def test_memory_is_told_and_does_not_grow(bench):
     assert resident() < before + 10.0
 
 
-def test_refused_commands_and_warnings_show_in_that_second_and_are_counted_on(bench):
+def test_refused_commands_and_warnings_show_in_that_second_and_are_counted_on(start):
+    # Without warnings of being late.
+    bench = start("-p", "max_catch_up:=100000")
     first_report(bench)
     assert part(bench, "commands")[0].message == "none refused"
     # The name of the foot's topic was warned of at start.
     assert part(bench, "node")[1]["warnings"] == "1" and "foot-sole" in part(bench, "node")[1]["last warning"]
     bench.probe.publisher(JointState, "joint_command").publish(JointState(name=["elbow"], position=[0.0]))
+    # The refusal and the warning may be told in two reports.
     wait_until(lambda: part(bench, "node")[1]["warnings"] == "2", what="the warning")
-    refused = [m for m in bench.diagnostics if m.status[2].level == bytes([1])]
-    assert len(refused) == 1 and part(bench, "commands")[1]["joint_command refused: unknown name"] == "1"
+    wait_until(lambda: part(bench, "commands")[1]["joint_command refused: unknown name"] == "1", what="the refusal")
     assert "elbow" in part(bench, "node")[1]["last warning"]
+    quiet = lambda: part(bench, "commands")[0].message == "none refused in the last second"
+    wait_until(lambda: quiet() and part(bench, "node")[0].level == DiagnosticStatus.OK, what="a second without any")
+    refused = [m for m in bench.diagnostics if m.status[2].level == bytes([1])]
+    assert len(refused) == 1
     warned = [m.status[4] for m in bench.diagnostics if "elbow" in m.status[4].message]
     assert len(warned) == 1 and warned[0].level == DiagnosticStatus.WARN
-    seen = len(bench.diagnostics)
-    wait_until(lambda: len(bench.diagnostics) > seen, what="the next second")
-    assert part(bench, "commands")[0].message == "none refused in the last second"
-    assert part(bench, "node")[0].level == DiagnosticStatus.OK
 
 
 def test_rosout_has_severity_name_text_and_place(bench):

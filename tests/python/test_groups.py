@@ -6,7 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from conftest import BINARY, wait_until
+from conftest import BINARY, nanoseconds, wait_until
 from cyclone import listen as cyclone_listen
 from limbs import limb
 from sensor_msgs.msg import JointState
@@ -116,9 +116,10 @@ def test_the_node_publishes_a_rig_on_tf(start, file):
     def arrived():
         return all(abs(bench.axis(name)[0] - angle) < 1e-9 for name, angle in target.items())
 
-    wait_until(arrived, timeout=10, what="the servos")
-    tf.take_all()
-    frames = {t.child_frame_id: t for t in wait_until(tf.take_all, what="/tf")[-1].transforms}
+    wait_until(arrived, what="the servos")
+    since = nanoseconds(bench.states[-1].header.stamp)
+    later = lambda: [m for m in tf.take_all() if nanoseconds(m.transforms[0].header.stamp) > since]
+    frames = {t.child_frame_id: t for t in wait_until(later, what="/tf")[-1].transforms}
     rig, l1 = frames["ik_hip"], frames["l1"]
     assert rig.header.frame_id == "base"
     q = rig.transform.rotation

@@ -86,8 +86,9 @@ def test_rclpy_has_the_type_with_these_fields(path):
 
 def test_topics_of_our_types_are_heard(start):
     bench = start(urdf=None)
-    own = {t: kinds[0] for t, kinds in bench.probe.node.get_topic_names_and_types() if kinds[0].startswith("realnoid/")}
-    assert {"/joint_monitors", "/body_states"} <= set(own)
+    found = lambda: {t: kinds[0] for t, kinds in bench.probe.node.get_topic_names_and_types() if kinds[0].startswith("realnoid/")}
+    wait_until(lambda: {"/joint_monitors", "/body_states"} <= set(found()), what="our topics")
+    own = found()
     for topic, kind in own.items():
         if topic in ("/joint_monitors", "/body_states"):
             received = bench.probe.listen(getattr(importlib.import_module("realnoid.msg"), kind.split("/")[-1]), topic)
@@ -105,9 +106,9 @@ def started(arguments, states="joint_states", domain=None):
     variables = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
     node = subprocess.Popen([BINARY, *map(str, arguments)], env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
-        wait_until(lambda: messages or node.poll() is not None, timeout=10, what="a state")
+        wait_until(lambda: messages or node.poll() is not None, what="a state")
         node.send_signal(signal.SIGINT)
-        output, errors = node.communicate(timeout=10)
+        output, errors = node.communicate(timeout=30)
         assert node.returncode == 0, errors
         return output
     finally:

@@ -31,7 +31,7 @@ class Leader:
     def state(self, stamp):
         """The state at this time, as soon as there is one."""
         find = lambda: next((s for s in reversed(self.bench.states) if nanoseconds(s.header.stamp) == stamp), None)
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + 30
         while time.monotonic() < deadline:
             if state := find():
                 return state
@@ -72,9 +72,10 @@ def test_the_world_waits_and_repeats_clock_and_states(start):
     wait_until(lambda: len(clock) > 5, what="/clock")
     assert {nanoseconds(c.clock) for c in clock} == {0} and stays_at(bench, 0)
     cpu = lambda: sum(map(int, open(f"/proc/{bench.simulator.process.pid}/stat").read().split()[13:15]))
-    before, diagnostics = cpu(), len(bench.diagnostics)
-    wait_until(lambda: len(bench.diagnostics) >= diagnostics + 2, what="two seconds")
-    assert (cpu() - before) / os.sysconf("SC_CLK_TCK") < 0.4, "waiting takes next to no CPU time"
+    before, began, diagnostics = cpu(), time.monotonic(), len(bench.diagnostics)
+    wait_until(lambda: len(bench.diagnostics) >= diagnostics + 2 and time.monotonic() - began > 2, what="two seconds")
+    share = (cpu() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - began)
+    assert share < 0.2, "waiting takes next to no CPU time"
 
 
 def test_each_stamped_command_makes_one_interval(start):
@@ -168,8 +169,7 @@ def test_lock_step_is_switched_on_and_off_while_the_node_runs(bench):
     [bad] = bench.probe.set(client, lockstep=1)
     assert not bad.successful and "lockstep" in bad.reason
     assert bench.probe.set(client, lockstep=True)[0].successful
-    wait_until(lambda: len({nanoseconds(s.header.stamp) for s in bench.states[-5:]}) == 1, what="the world to stand")
-    leader, stamp = Leader(bench), latest(bench)
+    leader, stamp = Leader(bench), bench.stands()
     leader.command(stamp, name=["hip"], effort=[0.0])
     leader.state(stamp + MS)
     assert bench.probe.set(client, lockstep=False)[0].successful

@@ -64,7 +64,7 @@ def marker_count(bench):
 
 def test_every_kind_is_shown_for_the_humanoid_on_the_ground(standing):
     bench, scene = standing
-    wait_until(lambda: scene.kinds() >= set(KINDS), timeout=15, what="every kind")
+    wait_until(lambda: scene.kinds() >= set(KINDS), what="every kind")
     assert scene.kinds() == set(KINDS), "no normals unless they are asked for"
     facts = inspected()
     markers = scene.markers()
@@ -88,7 +88,9 @@ def test_every_kind_is_shown_for_the_humanoid_on_the_ground(standing):
 
 def test_centres_of_mass_and_principal_axes_are_those_of_inspect(standing):
     bench, scene = standing
-    facts = wait_until(lambda: scene.of("principal_axes") and inspected())
+    wanted = {"centers_of_mass", "principal_axes", "link_centers_of_mass", "link_principal_axes"}
+    wait_until(lambda: scene.kinds() >= wanted, what="centres and axes")
+    facts = inspected()
     centers, axes = scene.of("centers_of_mass"), scene.of("principal_axes")
     heavy = {i: link for i, link in enumerate(facts["links"]) if link["mass"] > 0}
     assert set(centers) == set(axes) == set(heavy)
@@ -118,25 +120,28 @@ def test_centres_of_mass_and_principal_axes_are_those_of_inspect(standing):
 def test_contacts_carry_the_weight_and_boxes_hold_the_wireframes(standing):
     bench, scene = standing
     frames = Frames(bench.probe)
-    wait_until(lambda: len(scene.of("contacts")) == 3 and frames.complete(), timeout=15, what="contacts")
+    wait_until(lambda: len(scene.of("contacts")) == 3 and frames.complete(), what="contacts")
     mass = inspected()["mass"]
 
     def carried():
-        forces = scene.of("contacts").get(2)
+        """What is shown at the first instant at which the ground carries the humanoid."""
+        shown = scene.markers()
+        forces = shown.get(("contacts", 2))
         if forces is None:
-            return False
+            return None
         lines = points(forces).reshape(-1, 2, 3)
         total = sum(end - start for start, end in lines) / 0.001
-        return abs(abs(total[2]) - mass * 9.80665) < 0.02 * mass * 9.80665
+        return shown if abs(abs(total[2]) - mass * 9.80665) < 0.02 * mass * 9.80665 else None
 
-    wait_until(carried, timeout=20, what="the ground to carry the humanoid")
-    at, normals = points(scene.of("contacts")[0]), points(scene.of("contacts")[1]).reshape(-1, 2, 3)
+    shown = wait_until(carried, what="the ground to carry the humanoid")
+    frames.take()
+    at, normals = points(shown["contacts", 0]), points(shown["contacts", 1]).reshape(-1, 2, 3)
     assert abs(at[:, 2]).max() < 0.005 and len(at) == len(normals)
     assert numpy.linalg.norm(normals[:, 1] - normals[:, 0], axis=1) == pytest.approx(0.05)
     # It stands still: tf and markers of slightly different instants may be compared.
-    for i, box in scene.of("aabbs").items():
+    for i, box in ((i, box) for (kind, i), box in shown.items() if kind == "aabbs"):
         low, high = points(box).min(axis=0), points(box).max(axis=0)
-        wire = scene.of("wireframes")[i]
+        wire = shown["wireframes", i]
         edges = numpy.array([frames.in_world(wire.header.frame_id, p) for p in points(wire)])
         assert (edges > low - 2e-3).all() and (edges < high + 2e-3).all(), i
         # Polygons of 16 segments lie up to 2 % of a radius inside; the box is that of the true shape.
@@ -149,8 +154,10 @@ def test_ranges_turn_about_their_axes_from_end_to_end(start):
     scene, frames = Scene(bench.probe.listen(MarkerArray, "debug/markers")), Frames(bench.probe)
     wait_until(lambda: len(scene.of("ranges")) == 6 and frames.complete(), what="ranges")
     assert scene.kinds() == {"axes", "ranges"}
+    # One publisher: of two, the second may be heard first.
+    command = bench.probe.publisher(JointState, "joint_command")
     for target in (0.0, 0.7):
-        bench.probe.publisher(JointState, "joint_command").publish(JointState(name=["hip"], position=[target]))
+        command.publish(JointState(name=["hip"], position=[target]))
         wait_until(lambda: abs(bench.axis("hip")[0] - target) < 1e-3, what="the hip")
         ranges = scene.of("ranges")
         arc, hand = ranges[0], ranges[1]
@@ -216,9 +223,11 @@ def test_kinds_size_and_colour_are_parameters_with_good_and_bad_values(standing)
         assert bench.probe.get(client, name) == before
     good = {"markers": ["centers_of_mass", "normals"], "markers_size": 0.0, "markers_color": [0.0, 1.0, 0.0, 0.5]}
     assert all(result.successful for result in bench.probe.set(client, **good))
-    wait_until(lambda: scene.kinds() == {"centers_of_mass", "normals"}, what="the kinds asked for")
-    color = next(iter(scene.of("centers_of_mass").values())).color
-    assert (color.r, color.g, color.b, color.a) == (0.0, 1.0, 0.0, 0.5)
+    # One parameter is set after the other, and there are markers of in between.
+    of = lambda color: (color.r, color.g, color.b, color.a)
+    colors = lambda: {of(m.color) for m in scene.of("centers_of_mass").values()}
+    wanted = lambda: scene.kinds() == {"centers_of_mass", "normals"} and colors() == {(0.0, 1.0, 0.0, 0.5)}
+    wait_until(wanted, what="the kinds and the colour asked for")
     facts = inspected()
     # B-17: size 0 is the least half edge of the box around the shapes: of a ball its radius.
     colliders = [c for c in facts["world"]["colliders"] if c["link"]]
@@ -234,7 +243,7 @@ def test_kinds_size_and_colour_are_parameters_with_good_and_bad_values(standing)
 def test_other_engines_show_the_same(start, engine):
     bench = start(*ON_THE_GROUND, "-p", f"engine:={engine}", urdf=None)
     scene = Scene(bench.probe.listen(MarkerArray, "debug/markers"))
-    wait_until(lambda: scene.kinds() == set(KINDS), timeout=20, what="every kind")
+    wait_until(lambda: scene.kinds() == set(KINDS), what="every kind")
 
 
 def test_leaving_takes_the_markers_away(standing):

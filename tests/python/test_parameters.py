@@ -126,7 +126,7 @@ def test_an_effect_that_is_switched_to_nonsense_is_refused():
 
 
 def run(*arguments):
-    return subprocess.run([BINARY, "run", *map(str, arguments)], capture_output=True, text=True, timeout=10)
+    return subprocess.run([BINARY, "run", *map(str, arguments)], capture_output=True, text=True, timeout=60)
 
 
 @pytest.mark.parametrize(

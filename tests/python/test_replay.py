@@ -18,7 +18,7 @@ from simulation_interfaces.msg import EntityState, SimulationState
 from simulation_interfaces.srv import ResetSimulation, SetEntityState, SetSimulationState, StepSimulation
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import Trigger
-from test_recording import events, file_of, messages, record, switchable
+from test_recording import events, file_of, messages, recorder, switchable
 
 HUMANOID = HERE / "../../urdf/origin.urdf"
 
@@ -58,7 +58,7 @@ def busy(bench):
     target = JointState(name=[last().name[0]], position=[0.2], velocity=[1.0])
     until_heard(lambda: joint.publish(target), lambda: abs(last().position[0] - 0.2) < 0.01, "the target")
     remember = bench.probe.node.create_client(Trigger, "remember_pose")
-    assert remember.wait_for_service(15.0)
+    assert remember.wait_for_service(30.0)
     assert bench.probe.call(lambda: remember.call_async(Trigger.Request())).success
     targets = Float64MultiArray(data=[0.02 * (i % 3) for i in range(n)])
     until_heard(lambda: servo.publish(targets), lambda: abs(last().position[0]) < 0.01, "the targets")
@@ -192,6 +192,7 @@ def test_command_timeouts_and_lock_step_have_the_same_bits(tmp_path):
         client = bench.probe.parameters()
         assert bench.probe.set(client, lockstep=True)[0].successful
         joint = bench.probe.publisher(JointState, "joint_command")
+        bench.stands()
         for _ in range(50):
             last = bench.states[-1]
             message = JointState(name=["hip"], effort=[0.3])
@@ -361,21 +362,23 @@ def test_after_sigkill_it_can_be_replayed(tmp_path):
 
 def test_a_bag_from_the_middle_of_a_run_is_refused_with_the_reason(start, tmp_path):
     bench = start()
+    record = recorder(bench)
     let_time_pass(bench, 0.05)
-    assert record(bench, True, tmp_path / "run").success
+    assert record(True, tmp_path / "run").success
     let_time_pass(bench, 0.05)
-    assert record(bench, False).success
+    assert record(False).success
     result = replay(tmp_path / "run")
     assert result.returncode == 2 and "begins in the middle of a run" in result.stderr
 
 
 def test_a_bag_that_the_service_began_before_time_ran_can_be_replayed(start, tmp_path):
     bench = start("-p", "paused:=true", urdf=switchable(tmp_path))
-    assert record(bench, True, tmp_path / "run").success
+    record = recorder(bench)
+    assert record(True, tmp_path / "run").success
     client = bench.probe.parameters()
     assert bench.probe.set(client, paused=False)[0].successful
     busy(bench)
-    assert record(bench, False).success
+    assert record(False).success
     assert same(tmp_path / "run")[0] > 300
 
 

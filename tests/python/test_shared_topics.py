@@ -29,7 +29,7 @@ def simulators():
 def refused(domain, *arguments):
     """What the node says when it does not start."""
     simulator = Simulator(*arguments, domain=domain)
-    output, errors = simulator.process.communicate(timeout=15)
+    output, errors = simulator.process.communicate(timeout=30)
     assert simulator.process.returncode == 1, errors
     assert not output, "it did not start"
     return errors
@@ -38,7 +38,7 @@ def refused(domain, *arguments):
 def runs(probe, simulators, *arguments, topic="joint_states"):
     states = probe.listen(JointState, topic)
     simulators.append(Simulator(*arguments, domain=probe.domain))
-    wait_until(lambda: states or simulators[-1].process.poll() is not None, timeout=10, what="the first state")
+    wait_until(lambda: states or simulators[-1].process.poll() is not None, what="the first state")
     assert states, simulators[-1].process.communicate()[1]
     return simulators[-1]
 
@@ -67,7 +67,7 @@ def test_it_starts_where_that_is_allowed(start):
     bench = start("-p", "allow_shared_topics:=true")
     bench.probe.node.create_publisher(JointState, "joint_states", 10)
     other = Simulator("-p", "allow_shared_topics:=true", "-r", "__node:=other", domain=bench.domain)
-    wait_until(lambda: any(d.status[0].name.startswith("/other") for d in bench.diagnostics), timeout=10, what="the other one")
+    wait_until(lambda: any(d.status[0].name.startswith("/other") for d in bench.diagnostics), what="the other one")
     assert all(status.level == b"\0" for d in bench.diagnostics for status in d.status if status.name.endswith("topics"))
     other.stop()
 
@@ -82,7 +82,7 @@ def test_two_namespaces_live_in_one_domain_and_are_told_of_the_clock(start):
     left = start("-r", "__ns:=/left", topic="/left/joint_states")
     right = Simulator("-r", "__ns:=/right", domain=left.domain)
     states = left.probe.listen(JointState, "/right/joint_states")
-    wait_until(lambda: states, timeout=10, what="the other one")
+    wait_until(lambda: states, what="the other one")
     for own, other in (("left", "right"), ("right", "left")):
         told = lambda: [
             {v.key: v.value for v in s.values}
@@ -90,7 +90,7 @@ def test_two_namespaces_live_in_one_domain_and_are_told_of_the_clock(start):
             for s in d.status
             if s.name == f"/{own}/forward_dynamics: topics" and s.level == b"\x01"
         ]
-        wait_until(told, timeout=10, what="the warning")
+        wait_until(told, what="the warning")
         assert told()[-1] == {"/clock": f"/{other}/forward_dynamics"}, "nothing else is shared"
     right.stop()
 
@@ -98,7 +98,7 @@ def test_two_namespaces_live_in_one_domain_and_are_told_of_the_clock(start):
 def test_if_it_happens_later_it_is_said_with_the_name(bench):
     wait_until(lambda: topics(bench) == (0, {}), what="diagnostics")
     publisher = bench.probe.node.create_publisher(JointState, "joint_states", 10)
-    wait_until(lambda: topics(bench) == (1, {"/joint_states": "/probe"}), timeout=10, what="the warning")
+    wait_until(lambda: topics(bench) == (1, {"/joint_states": "/probe"}), what="the warning")
     wait_until(lambda: bench.logged("/probe publishes /joint_states"), what="the log")
     diagnostics = len(bench.diagnostics)
     wait_until(lambda: len(bench.diagnostics) > diagnostics + 2, what="more diagnostics")
@@ -109,7 +109,7 @@ def test_if_it_happens_later_it_is_said_with_the_name(bench):
     wait_until(lambda: topics(bench) == (0, {}), what="no warning")
     assert bench.probe.set(client, allow_shared_topics=False)[0].successful
     bench.probe.node.destroy_publisher(publisher)
-    wait_until(lambda: topics(bench) == (0, {}), timeout=10, what="the end of the warning")
+    wait_until(lambda: topics(bench) == (0, {}), what="the end of the warning")
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL])
@@ -118,5 +118,5 @@ def test_a_node_starts_again_after_its_predecessor_has_ended(probe, simulators, 
         simulator = runs(probe, simulators)
         simulators.remove(simulator)
         simulator.process.send_signal(end)
-        simulator.process.communicate(timeout=15)
+        simulator.process.communicate(timeout=30)
     runs(probe, simulators)
