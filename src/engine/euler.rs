@@ -2,6 +2,7 @@
 
 use super::midpoint::DEEPEST;
 use super::rbx::{Rbx, StepReport, StepSettings};
+use super::whirl::Seen;
 use crate::dynamics::{Scheme, exponential_step, move_coordinates, write_damping};
 use crate::model::Model;
 use crate::solver::{AxisCommand, StepStart, write_softs};
@@ -72,7 +73,7 @@ impl Rbx {
         write_softs(m, &mut self.ws, &start, s.effects);
         write_damping(m, &mut self.ws, (s.h, Scheme::Start), s.effects.body_damping);
         let settled = self.axes.settle(m, &mut self.ws, at, (s.gravity, s.h, s.passes), &mut self.qdd);
-        if self.whirls(s.h) {
+        if self.whirls(m, s.h) {
             return End::Whirls;
         }
         let at = self.state.as_ref();
@@ -96,14 +97,25 @@ impl Rbx {
         End::Done
     }
 
-    /// Would the rule make energy of a piece with these accelerations? What contacts do is no whirl, and neither are laws that change, unless
-    /// they throw velocities about. Shorter pieces are looked at for that only: changes since another piece are not of their length.
-    fn whirls(&mut self, h: f64) -> bool {
+    /// Would the rule make energy of a piece with these accelerations? What joints and contacts do is no whirl, and neither are laws that
+    /// change, unless they throw velocities about. Shorter pieces are looked at for that only: changes since another piece are not of
+    /// their length.
+    fn whirls(&mut self, m: &Model, h: f64) -> bool {
+        let least = if self.axes.is_calm() && h == self.whole_step { WHIRLS } else { f64::INFINITY };
         let Some(trees) = &mut self.trees else { return false };
         for body in self.axes.contacts().into_iter().flat_map(|c| c.acting_bodies()).flatten() {
             trees.touch(body);
         }
-        let least = if self.axes.is_calm() && h == self.whole_step { WHIRLS } else { f64::INFINITY };
-        trees.grow((&self.qdd, &self.axes.free), &self.state.v, (h, least))
+        let touches = self.axes.contacts().is_some();
+        let Some(driven) = &mut self.axes.driven else { return false };
+        let (qdd, v) = (&self.qdd, &self.state.v);
+        let mut whirls = trees.grow(&Seen::new((qdd, v), driven, touches), (h, least));
+        if whirls {
+            driven.explain(m, &self.ws, &self.state.q);
+            whirls = trees.grow(&Seen::new((qdd, v), driven, touches), (h, least));
+        }
+        trees.end_step(qdd, h);
+        driven.end_step();
+        whirls
     }
 }

@@ -10,7 +10,7 @@ use super::whirl::{Trees, Whirl};
 use crate::dynamics::{Kinematics, Scheme, Workspace, kinematics, normalize, write_damping};
 use crate::math::{V3, Vec3};
 use crate::model::{AxisSlot, Base, Body, Effects, JointType, Model, rotation};
-use crate::solver::{AxisCommand, AxisSet, StateRef, StepStart};
+use crate::solver::{AxisCommand, AxisSet, Driven, StateRef, StepStart};
 
 /// State of one robot.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -275,7 +275,7 @@ impl Rbx {
         self.whirl = (integrator == Integrator::Rk4).then(|| Whirl::new(m.nv));
         let euler = integrator == Integrator::SemiImplicitEuler;
         self.trees = euler.then(|| Trees::new(m));
-        self.axes.free = vec![0.0; if euler && self.axes.contacts().is_some() { m.nv } else { 0 }];
+        self.axes.driven = euler.then(|| Box::new(Driven::new(m)));
         self.stages = (integrator == Integrator::Rk4).then(|| Stages::new(m));
         let extrapolates = integrator == Integrator::Extrapolation;
         self.extrapolation = extrapolates.then(|| Box::new(Extrapolation::new(m)));

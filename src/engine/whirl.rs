@@ -4,9 +4,13 @@
 //! acceleration estimates h |λ| of the fastest motion, as codes for stiff equations detect stiffness (Hairer, Wanner: *Solving Ordinary
 //! Differential Equations II*, 1996, §IV.2). Velocity products of light limbs that whirl, and light links between heavy ones, are such
 //! motions: Euler's rule makes energy of them at every step, RK4 beyond its region of stability.
+//!
+//! What drives, friction and stops change is not of that kind: their laws are implicit in the step. Before Euler's rule gives a step away it takes
+//! that out ([`Driven`]).
 
 use super::forest::Forest;
 use crate::model::Model;
+use crate::solver::Driven;
 use std::ops::Range;
 
 /// What moves the velocities by less than this share of 1 rad/s or m/s and themselves is no whirl.
@@ -67,11 +71,25 @@ pub(super) struct Trees {
     /// Velocity coordinates that follow each other in one tree, and that tree.
     runs: Vec<(Range<usize>, usize)>,
     trees: Vec<Tree>,
-    /// Accelerations of the step before (nv), of trees that nothing touched in it.
+    /// Accelerations of the step before (nv).
     last: Vec<f64>,
-    /// The same of all trees without contacts, which make them jump; not used if nothing can touch.
-    free: Vec<f64>,
     known: bool,
+}
+
+/// What Euler's rule looks at in a step; all of length nv.
+pub(super) struct Seen<'a> {
+    qdd: &'a [f64],
+    v: &'a [f64],
+    /// Accelerations without contacts, which make them jump, now and in the step before; `None` if nothing can touch.
+    free: Option<(&'a [f64], &'a [f64])>,
+    /// Changes that joints have made.
+    driven: &'a [f64],
+}
+
+impl<'a> Seen<'a> {
+    pub fn new((qdd, v): (&'a [f64], &'a [f64]), driven: &'a Driven, touches: bool) -> Self {
+        Self { qdd, v, free: touches.then(|| driven.free()), driven: driven.change() }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -110,7 +128,7 @@ impl Trees {
             }
         }
         let trees = vec![Tree::default(); forest.count];
-        Self { of_body: forest.of_body, runs, trees, last: vec![0.0; m.nv], free: vec![0.0; m.nv], known: false }
+        Self { of_body: forest.of_body, runs, trees, last: vec![0.0; m.nv], known: false }
     }
 
     pub fn forget(&mut self) {
@@ -125,55 +143,62 @@ impl Trees {
         }
     }
 
-    /// Notes accelerations `qdd`, a step `h` after those before them, at velocities `v`; without contacts they would be `free`, which is empty
-    /// if nothing can touch. Is the change in a tree that nothing touches more than `least` of those that there have been, or is the
-    /// step steep in any?
-    pub fn grow(&mut self, (qdd, free): (&[f64], &[f64]), v: &[f64], (h, least): (f64, f64)) -> bool {
-        for (at, tree) in &self.runs {
-            let tree = &mut self.trees[*tree];
-            let (qdd, last, v) = (&qdd[at.clone()], &mut self.last[at.clone()], &v[at.clone()]);
-            match free.get(at.clone()) {
-                Some(free) => {
-                    tree.look_free(free, &self.free[at.clone()], v);
-                    self.free[at.clone()].copy_from_slice(free);
-                }
-                None => tree.look_free(qdd, last, v),
-            }
-            if !tree.touched {
-                tree.look(qdd, last);
-            }
-        }
+    /// Is the change of accelerations since the step before, `h` ago, in a tree that nothing touches more than `least` of those that there
+    /// have been, or is the step steep in any?
+    pub fn grow(&mut self, seen: &Seen, (h, least): (f64, f64)) -> bool {
+        self.look(seen);
         let speed = |tree: usize| {
             self.runs
                 .iter()
                 .filter(|run| run.1 == tree)
-                .fold(0.0, |most: f64, run| most.max(largest(&v[run.0.clone()])))
+                .fold(0.0, |most: f64, run| most.max(largest(&seen.v[run.0.clone()])))
         };
-        let mut grows = false;
-        for (i, tree) in self.trees.iter_mut().enumerate() {
-            grows |= tree.is_steep(h) || (tree.grows(least) && h * tree.change > NOTHING * (1.0 + speed(i)));
+        self.known
+            && self.trees.iter().enumerate().any(|(i, tree)| {
+                tree.is_steep(h) || (tree.grows(least) && h * tree.change > NOTHING * (1.0 + speed(i)))
+            })
+    }
+
+    fn look(&mut self, seen: &Seen) {
+        for tree in &mut self.trees {
+            (tree.change, tree.rate, tree.now) = (0.0, 0.0, 0.0);
+        }
+        for (at, tree) in &self.runs {
+            let tree = &mut self.trees[*tree];
+            let (driven, v) = (&seen.driven[at.clone()], &seen.v[at.clone()]);
+            let (now, last) = seen.free.unwrap_or((seen.qdd, &self.last));
+            tree.look_free((&now[at.clone()], &last[at.clone()]), driven, v);
+            if !tree.touched {
+                tree.look((&seen.qdd[at.clone()], &self.last[at.clone()]), driven);
+            }
+        }
+    }
+
+    /// The present step of `h` with the accelerations `qdd` becomes the one before.
+    pub fn end_step(&mut self, qdd: &[f64], h: f64) {
+        for tree in &mut self.trees {
             tree.end_step(h, self.known);
         }
-        std::mem::replace(&mut self.known, true) && grows
+        self.last.copy_from_slice(qdd);
+        self.known = true;
     }
 }
 
 impl Tree {
-    /// Notes accelerations without contacts.
-    fn look_free(&mut self, free: &[f64], last: &[f64], v: &[f64]) {
-        for ((now, last), v) in free.iter().zip(last).zip(v) {
-            let rate = (now - last).abs() / (1.0 + v.abs());
+    /// Notes accelerations without contacts, now and in the step before.
+    fn look_free(&mut self, (now, last): (&[f64], &[f64]), driven: &[f64], v: &[f64]) {
+        for (((now, last), driven), v) in now.iter().zip(last).zip(driven).zip(v) {
+            let rate = (now - last - driven).abs() / (1.0 + v.abs());
             self.rate = if rate > self.rate { rate } else { self.rate };
         }
     }
 
-    /// Notes accelerations.
-    fn look(&mut self, qdd: &[f64], last: &mut [f64]) {
-        for (now, last) in qdd.iter().zip(last) {
-            let change = (now - *last).abs();
+    /// Notes accelerations, now and in the step before.
+    fn look(&mut self, (now, last): (&[f64], &[f64]), driven: &[f64]) {
+        for ((now, last), driven) in now.iter().zip(last).zip(driven) {
+            let change = (now - last - driven).abs();
             self.change = if change > self.change { change } else { self.change };
             self.now = if now.abs() > self.now { now.abs() } else { self.now };
-            *last = *now;
         }
     }
 

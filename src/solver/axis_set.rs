@@ -12,6 +12,7 @@ use super::between::Between;
 use super::books::Books;
 use super::contested::Contest;
 use super::couplings::Couplings;
+use super::driven::Driven;
 use super::law::{FRICTION, Law};
 use super::mobility::Answers;
 use super::{AxisCommand, AxisInput, Brakes};
@@ -93,8 +94,8 @@ pub struct AxisSet {
     passes: u32,
     /// Step of the last pass, s.
     pub(super) h: f64,
-    /// Accelerations of the last pass (nv) before couplings and contacts act; empty unless they are wanted.
-    pub free: Vec<f64>,
+    /// What joints change from step to step, for the rule that asks for it.
+    pub driven: Option<Box<Driven>>,
     /// Per axis: its tree is out of the computation. Empty if nothing ever rests.
     pub resting: Vec<bool>,
     pub(super) mean: bool,
@@ -139,7 +140,7 @@ impl AxisSet {
             contests: vec![Contest::default(); contested],
             passes: 0,
             h: 0.0,
-            free: vec![],
+            driven: None,
             resting: vec![false; if model.effects.deactivation { n } else { 0 }],
             mean: false,
             sweeps: 1,
@@ -240,8 +241,8 @@ impl AxisSet {
         self.take_rates(m, at, v0);
         self.write_inputs(m, ws, h);
         aba_hybrid(m, ws, (at.q, at.v), gravity, qdd);
-        if !self.free.is_empty() {
-            self.free.copy_from_slice(qdd);
+        if let Some(driven) = &mut self.driven {
+            driven.note(ws, qdd);
         }
         if let Some(answers) = &mut self.answers {
             answers.forget();

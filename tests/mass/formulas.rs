@@ -46,17 +46,22 @@ fn polygons(shape: &Shape) -> realnoid::shape::TriMesh {
 }
 
 /// Per kind: 1e-9 where all lengths are of one order, 1e-6 at 1 : 1000.
+fn agrees(off: fn(&Shape) -> f64, shape: &dyn Fn(&Draw) -> Shape) {
+    let config =
+        ProptestConfig { cases: 24, max_shrink_iters: 40, failure_persistence: None, ..ProptestConfig::default() };
+    proptest!(config, |(ordinary in ordinary(), extreme in extreme())| {
+        for (draw, allowed) in [(ordinary, 1e-9), (extreme, 1e-6)] {
+            let off = off(&shape(&draw));
+            prop_assert!(off < allowed, "{off:e} at {:?}", shape(&draw));
+        }
+    });
+}
+
 macro_rules! agree {
     ($($name:ident: $check:ident($shape:expr);)*) => {$(
-        proptest! {
-            #![proptest_config(ProptestConfig { cases: 24, max_shrink_iters: 40, failure_persistence: None, ..ProptestConfig::default() })]
-            #[test]
-            fn $name(ordinary in ordinary(), extreme in extreme()) {
-                let off = $check(&$shape(&ordinary));
-                prop_assert!(off < 1e-9, "{off:e} at {:?}", $shape(&ordinary));
-                let off = $check(&$shape(&extreme));
-                prop_assert!(off < 1e-6, "{off:e} at {:?}", $shape(&extreme));
-            }
+        #[test]
+        fn $name() {
+            agrees($check, &$shape);
         }
     )*};
 }
