@@ -2,10 +2,12 @@
 #![allow(clippy::unwrap_used)] // a test may panic
 
 mod support;
+mod touching;
 
 use realnoid::engine::State;
 use realnoid::math::Vec3;
 use realnoid::model::{AxisSlot, Base, Breakable, Model};
+use realnoid::shape::ContactForm;
 use realnoid::world::{Integrator, Settings, World};
 use std::sync::Arc;
 use support::urdf::{group, joint, link, load_text, model, robot};
@@ -129,6 +131,22 @@ fn what_came_off_falls() {
             assert_eq!(w.state().axis(w.model(), axis), (*position, 0.0), "{kind}");
             assert!(position.abs() < 1e-15, "{kind}");
         }
+    }
+}
+
+/// Where bodies touch, what came off falls onto the ground and lies there.
+#[test]
+fn what_came_off_lies_on_the_ground() {
+    let radius = 0.25;
+    for (kind, world) in KINDS.iter().flat_map(|kind| WORLDS.map(|world| (kind, world))) {
+        let mut m = Model::clone(&model(&hanging(kind, "break_threshold='1'"), Base::Fixed));
+        let ball = touching::on_link(&m, "bob", ContactForm::Ball { radius }, touching::surface(0.5));
+        m.set_colliders(vec![touching::ground(0.5), ball]);
+        let mut w = world(&Arc::new(m));
+        run(&mut w, 2000);
+        let z = w.new_snapshot().link_pose[1].translation.z;
+        assert_eq!(w.broken().len(), 1, "{kind}");
+        assert!((z - radius).abs() < 1e-6, "{kind}: {z}");
     }
 }
 

@@ -18,7 +18,7 @@ const HEAD: &str = "# What accuracy costs
 Made by `COMMAND`; do not edit. ORIGIN
 
 Each case is a scene whose outcome is known: by a closed form, or by a run of our own with far finer steps. A *rung* is an engine with an integrator; its ladder is the step
-(at a control interval of 8 ms: W-5 is the ladder), of `extrapolation` its accuracy from 1e-3 to 1e-12 at a control interval of 10 ms. Errors are taken every 40 ms; *greatest* is the worst of them. CPU time is that of the thread in steps and commands, the fastest of
+(at a control interval of 8 ms: W-5 is the ladder), of `extrapolation` its accuracy from 1e-3 to 1e-12 at a control interval of 40 ms, of 10 ms where commands come or the solver iterates. Errors are taken every 40 ms; *greatest* is the worst of them. CPU time is that of the thread in steps and commands, the fastest of
 several runs; absolute times hold for this machine only, ratios travel better. In the diagrams cheap and accurate is below on the left; each curve goes upwards with finer steps.
 
 - **order**: slope of the error over the step, by least squares over the longest stretch of at least three points in which it is steady (the slopes between neighbours within 0.3), with errors below

@@ -22,15 +22,16 @@ const MOST_STEPS: i64 = 1000;
 pub const ACCURACIES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
 /// Of the same, in a hurry.
 const QUICK_ACCURACIES: [f64; 3] = [1e-3, 1e-6, 1e-9];
-/// Control interval on that ladder, ns, with one step in it.
-const ACCURATE_INTERVAL_NS: i64 = 10_000_000;
+/// Control interval on that ladder, ns, with one step in it, where commands come or the solver iterates. Elsewhere it is as long as from one
+/// instant that is looked at to the next: the method chooses its pieces itself.
+const COMMANDED_INTERVAL_NS: i64 = 10_000_000;
 
 /// What is changed from point to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ladder {
     /// The step: steps per control interval (W-5).
     Steps,
-    /// What the integrator may err by, at one step per control interval of 10 ms.
+    /// What the integrator may err by, at one step per control interval.
     Accuracy,
     /// Iterations of the solver (W-6) at a step of [`ITERATED_STEP`].
     Iterations,
@@ -177,7 +178,7 @@ impl Wish {
             };
             let of = |integrator, ladder, points| Rung { engine: *engine, integrator, ladder, points };
             rungs.extend(chosen.iter().map(|i| match i {
-                Some(Integrator::Extrapolation) => of(*i, Ladder::Accuracy, self.accurate()),
+                Some(Integrator::Extrapolation) => of(*i, Ladder::Accuracy, self.accurate(case)),
                 _ => of(*i, Ladder::Steps, self.steps.clone()),
             }));
             if case.iterates {
@@ -195,9 +196,10 @@ impl Wish {
         self.iterations.iter().map(at).collect()
     }
 
-    fn accurate(&self) -> Vec<Point> {
+    fn accurate(&self, case: &Case) -> Vec<Point> {
         let iterations = Settings::default().solver_iterations;
-        let at = |x: &f64| Point { interval_ns: ACCURATE_INTERVAL_NS, steps: 1, iterations, accuracy: *x };
+        let interval_ns = if case.orders.is_some() || case.iterates { COMMANDED_INTERVAL_NS } else { GRID_NS };
+        let at = |x: &f64| Point { interval_ns, steps: 1, iterations, accuracy: *x };
         self.accuracies.iter().map(at).collect()
     }
 }

@@ -168,10 +168,12 @@ impl Point {
         self.axes[n].dot(v)
     }
 
-    /// When within a step of `h` it closes, if it bounces then and does not come back within the step: else it rests.
+    /// When within a step of `h` it closes, if it bounces then and does not come back within the step: else it rests. What counts as
+    /// closed has been stopped by the first solve, however short the step: it bounces at once.
     pub(super) fn closes(&self, h: f64) -> Option<f64> {
-        let t = closing(self.gap, self.middle_speed, (self.free - self.middle_speed) / h).filter(|t| *t <= h)?;
-        (self.leaves(t, h).0 > 0.0).then_some(t)
+        let t = closing(self.gap, self.middle_speed, (self.free - self.middle_speed) / h)?;
+        let t = if t > h && self.gap.abs() < CLOSED { 0.0 } else { t };
+        (t <= h && self.leaves(t, h).0 > 0.0).then_some(t)
     }
 
     /// Velocity and gap at the end of a step of `h` after a bounce at `t`: it falls freely until then, leaves with `restitution`
