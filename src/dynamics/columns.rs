@@ -74,21 +74,31 @@ impl Columns {
 impl Response {
     /// The responses of a body, for the state `q` (nq) of the factor; none for the world (body 0).
     pub fn columns(&self, m: &Model, ws: &Workspace<f64>, q: &[f64], body: usize, out: &mut Columns) {
-        let ids = self.layout.chunks(body);
         out.body = body;
+        let at = (m, ws, q);
+        wide!(
+            Self::columns_any,
+            Response::columns_any,
+            (this: &Response = self, at: (&Model, &Workspace<f64>, &[f64]) = at, out: &mut Columns = out)
+        );
+    }
+
+    #[inline(always)]
+    fn columns_any(&self, (m, ws, q): (&Model, &Workspace<f64>, &[f64]), out: &mut Columns) {
+        let ids = self.layout.chunks(out.body);
         out.ids.clear();
         out.ids.extend_from_slice(ids);
         out.values.clear();
         out.values.resize(6 * CHUNK * ids.len(), 0.0);
         let length = CHUNK * ids.len();
-        let mut force = Six6::unit();
-        let (mut i, mut chunk) = (body, ids.len());
+        let (mut force, mut y) = (Six6::unit(), [[0.0; 6]; 6]);
+        let (mut i, mut chunk) = (out.body, ids.len());
         while i != 0 {
             let place = self.layout.place(i);
             while chunk > 0 && ids.get(chunk - 1).is_some_and(|id| *id as usize * CHUNK > place) {
                 chunk -= 1;
             }
-            let (y, count) = self.climb_six(m, ws, q, i, &mut force);
+            let count = self.climb_six((m, ws, q), i, &mut force, &mut y);
             let at = chunk.saturating_sub(1) * CHUNK + place % CHUNK;
             for (k, y) in y[..count].iter().enumerate() {
                 for (column, y) in out.values.chunks_exact_mut(length).zip(y) {
@@ -106,11 +116,16 @@ impl Response {
         }
     }
 
-    /// Takes six forces past the joint of a body: its responses to them, and how many those are.
+    /// Takes six forces past the joint of a body: its responses `y` to them, and how many those are.
     #[inline(always)]
-    fn climb_six(&self, m: &Model, ws: &Workspace<f64>, q: &[f64], i: usize, f: &mut Six6) -> ([Six; 6], usize) {
+    fn climb_six(
+        &self,
+        (m, ws, q): (&Model, &Workspace<f64>, &[f64]),
+        i: usize,
+        f: &mut Six6,
+        y: &mut [Six; 6],
+    ) -> usize {
         let b = &m.bodies[i];
-        let mut y = [[0.0; 6]; 6];
         match b.joint {
             JointType::Revolute => {
                 let u = f.torque[2];
@@ -147,7 +162,7 @@ impl Response {
                 }
             }
         }
-        (y, b.joint.nv())
+        b.joint.nv()
     }
 }
 
@@ -179,10 +194,14 @@ impl Six6 {
     fn take(&mut self, d: &Dof<f64>, u: &Six) {
         let x = scaled(d.d, u);
         for (row, s) in self.torque.iter_mut().zip([d.ua.x, d.ua.y, d.ua.z]) {
-            (0..6).for_each(|k| row[k] -= s * x[k]);
+            for k in 0..6 {
+                row[k] -= s * x[k];
+            }
         }
         for (row, s) in self.force.iter_mut().zip([d.ul.x, d.ul.y, d.ul.z]) {
-            (0..6).for_each(|k| row[k] -= s * x[k]);
+            for k in 0..6 {
+                row[k] -= s * x[k];
+            }
         }
     }
 
@@ -190,24 +209,43 @@ impl Six6 {
     #[inline(always)]
     fn pass_on(&mut self, r: &M3<f64>, p: V3<f64>) {
         let (t, f) = (times(r, &self.torque), times(r, &self.force));
-        let cross = |a: f64, x: &Six, b: f64, y: &Six, t: &Six| std::array::from_fn(|k| a * x[k] - b * y[k] + t[k]);
         self.torque = [
-            cross(p.y, &f[2], p.z, &f[1], &t[0]),
-            cross(p.z, &f[0], p.x, &f[2], &t[1]),
-            cross(p.x, &f[1], p.y, &f[0], &t[2]),
+            cross((p.y, &f[2]), (p.z, &f[1]), &t[0]),
+            cross((p.z, &f[0]), (p.x, &f[2]), &t[1]),
+            cross((p.x, &f[1]), (p.y, &f[0]), &t[2]),
         ];
         self.force = f;
     }
 }
 
+// Loops, not closures: those may be compiled apart, without the features of the function around them.
+
 #[inline(always)]
 fn scaled(s: f64, x: &Six) -> Six {
-    std::array::from_fn(|k| s * x[k])
+    let mut out = *x;
+    for out in &mut out {
+        *out *= s;
+    }
+    out
+}
+
+/// `a x − b y + t`.
+#[inline(always)]
+fn cross((a, x): (f64, &Six), (b, y): (f64, &Six), t: &Six) -> Six {
+    let mut out = *t;
+    for k in 0..6 {
+        out[k] += a * x[k] - b * y[k];
+    }
+    out
 }
 
 #[inline(always)]
 fn dot(v: V3<f64>, x: &Three) -> Six {
-    std::array::from_fn(|k| v.x * x[0][k] + v.y * x[1][k] + v.z * x[2][k])
+    let mut out = [0.0; 6];
+    for k in 0..6 {
+        out[k] = v.x * x[0][k] + v.y * x[1][k] + v.z * x[2][k];
+    }
+    out
 }
 
 #[inline(always)]

@@ -252,7 +252,7 @@ impl Contacts {
                 start: (u, placed.normal.dot(u)),
                 placed,
                 axes: axes(placed.normal),
-                middle_speed: 0.0,
+                middle: Default::default(),
                 floor: 0.0,
                 closes: None,
                 bounce: None,

@@ -5,73 +5,146 @@ use crate::math::Lane;
 /// A pivot below this share of its diagonal is rounding: the row depends on those before it, and is left out.
 const DEPENDENT: f64 = 1e-12;
 
-/// Lower factor of a symmetric positive semidefinite matrix, and a solution.
+/// Numbers that are multiplied, and rows that are solved for, at once.
+const FOUR: usize = 4;
+type Four = [f64; FOUR];
+
+/// How long a row of n numbers is in a matrix for [`Cholesky`]: whole fours, what is in the last one besides does not count.
+pub(super) fn padded(n: usize) -> usize {
+    n.next_multiple_of(FOUR).max(FOUR)
+}
+
+/// Lower factor of a symmetric positive semidefinite matrix, and a solution. Four rows share a register, so nothing is added up
+/// across lanes; what is added up in one has the order of [`dot`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cholesky {
     n: usize,
-    /// Row by row; the diagonal holds its inverse, 0 for a row left out.
-    l: Vec<f64>,
-    x: Vec<f64>,
+    /// Four rows after four, each column by column. What is above the diagonal does not count.
+    l: Vec<Four>,
+    /// The same, four columns after four, each row by row.
+    turned: Vec<Four>,
+    /// Of the diagonal, by itself: a number put into a register by way of memory is waited for. 0 for a row left out.
+    inverse: Vec<Four>,
+    x: Vec<Four>,
 }
 
 impl Cholesky {
     /// Room for n rows.
     pub fn make_room(&mut self, n: usize) {
-        if n > self.x.len() {
-            self.l.resize(n * n, 0.0);
-            self.x.resize(n, 0.0);
+        let high = padded(n);
+        if high > FOUR * self.x.len() {
+            self.x.resize(high / FOUR, [0.0; FOUR]);
+            self.inverse.resize(high / FOUR, [0.0; FOUR]);
+            self.l.resize(high / FOUR * high, [0.0; FOUR]);
+            self.turned.resize(high / FOUR * high, [0.0; FOUR]);
         }
     }
 
-    /// Of the matrix with these elements, asked for with row ≥ column.
+    /// Of the matrix of n rows that are [`padded`], whose diagonal is more by its share `soft`.
     #[inline(always)]
-    pub fn factorise<L: Lane>(&mut self, n: usize, element: impl Fn(usize, usize) -> f64) {
+    pub fn factorise<L: Lane>(&mut self, n: usize, matrix: &[f64], soft: f64) {
         self.n = n;
+        let (high, fours) = (padded(n), padded(n) / FOUR);
         // Column by column: the elements of one do not wait for each other.
         for k in 0..n {
-            let (above, below) = self.l.split_at_mut((k + 1) * n);
-            let pivot = &mut above[k * n..];
-            let own = element(k, k);
-            let left = own - dot::<L>(&pivot[..k], &pivot[..k]);
-            pivot[k] = if left > DEPENDENT * own { 1.0 / left.sqrt() } else { 0.0 };
-            let mut i = k + 1;
-            let (pivot, inverse) = (&pivot[..k], pivot[k]);
-            let mut fours = below[..(n - k - 1) * n].chunks_exact_mut(FOUR * n);
-            for four in &mut fours {
-                let found = dots::<L>(four, n, pivot);
-                for (r, found) in found.into_iter().enumerate() {
-                    four[r * n + k] = (element(i + r, k) - found) * inverse;
-                }
-                i += FOUR;
-            }
-            for (i, row) in (i..n).zip(fours.into_remainder().chunks_exact_mut(n)) {
-                row[k] = (element(i, k) - dot::<L>(&row[..k], pivot)) * inverse;
+            let (first, lane) = (k / FOUR, k % FOUR);
+            let own = matrix[k * high..][..high].as_chunks::<FOUR>().0;
+            let (above, below) = self.l.split_at_mut((first + 1) * high);
+            let pivot = &mut above[first * high..];
+            let turned = self.turned[first * high..][..high].as_chunks_mut::<FOUR>().0;
+            let found = dots::<L>(pivot, pivot, (k, lane));
+            let diagonal = own[first][lane] + soft * own[first][lane];
+            let left = diagonal - found.numbers()[lane];
+            let inverse = if left > DEPENDENT * diagonal { 1.0 / left.sqrt() } else { 0.0 };
+            self.inverse[first][lane] = inverse;
+            let x = (L::read(&own[first]) - found) * L::of(inverse);
+            put(&x, &mut pivot[k], (&mut turned[first], lane));
+            for four in first + 1..fours {
+                let rows = &mut below[(four - first - 1) * high..][..high];
+                let x = (L::read(&own[four]) - dots::<L>(rows, pivot, (k, lane))) * L::of(inverse);
+                put(&x, &mut rows[k], (&mut turned[four], lane));
             }
         }
     }
 
-    /// Solves for this right-hand side; rows left out get 0.
+    /// Solves for this right-hand side of n numbers; rows left out get 0.
     #[inline(always)]
     pub fn solve<L: Lane>(&mut self, right: &[f64]) {
-        let (n, l) = (self.n, &self.l);
-        for (i, right) in right.iter().enumerate().take(n) {
-            let row = &l[i * n..i * n + i + 1];
-            self.x[i] = (right - dot::<L>(&row[..i], &self.x[..i])) * row[i];
-        }
-        for i in (0..n).rev() {
-            let row = &l[i * n..i * n + i + 1];
-            let x = self.x[i] * row[i];
-            self.x[i] = x;
-            for (to, l) in self.x[..i].iter_mut().zip(row) {
-                *to -= l * x;
+        let (high, fours) = (padded(self.n), padded(self.n) / FOUR);
+        for four in 0..fours {
+            let (known, own) = self.l[four * high..][..high].split_at(FOUR * four);
+            let (sum, mut rest, mut x) = (times::<L>(known, &self.x), [-0.0; FOUR], [0.0; FOUR]);
+            for lane in 0..FOUR {
+                let Some(right) = right.get(FOUR * four + lane) else { break };
+                x[lane] = (right - (sum.numbers()[lane] + rest[lane])) * self.inverse[four][lane];
+                for below in lane + 1..FOUR {
+                    rest[below] += own[lane][below] * x[lane];
+                }
             }
+            self.x[four] = x;
+        }
+        for four in (0..fours).rev() {
+            let (own, below) = self.turned[four * high..][FOUR * four..high].split_at(FOUR);
+            let found = &self.x[four + 1..fours].as_flattened()[..self.n.saturating_sub(FOUR * (four + 1))];
+            let mut left = L::read(&self.x[four]);
+            for (row, x) in below[..found.len()].iter().zip(found).rev() {
+                left -= L::read(row) * L::of(*x);
+            }
+            let mut x = [left.numbers()[0], left.numbers()[1], left.numbers()[2], left.numbers()[3]];
+            for lane in (0..FOUR).rev() {
+                if FOUR * four + lane >= self.n {
+                    continue;
+                }
+                x[lane] *= self.inverse[four][lane];
+                for above in 0..lane {
+                    x[above] -= own[lane][above] * x[lane];
+                }
+            }
+            self.x[four] = x;
         }
     }
 
     /// What the last solve found.
     pub fn solution(&self) -> &[f64] {
-        &self.x[..self.n]
+        &self.x.as_flattened()[..self.n]
     }
+}
+
+/// Puts the numbers of a column of four rows where both orders want them.
+#[inline(always)]
+fn put<L: Lane>(x: &L, column: &mut Four, (rows, lane): (&mut [Four; FOUR], usize)) {
+    column.copy_from_slice(x.numbers());
+    for (row, x) in rows.iter_mut().zip(column) {
+        row[lane] = *x;
+    }
+}
+
+/// [`dot`] of the first k numbers of each of four rows with those of row `lane` of four others; both column by column.
+#[inline(always)]
+fn dots<L: Lane>(rows: &[Four], others: &[Four], (k, lane): (usize, usize)) -> L {
+    let ((rows, last), (others, other)) = (rows[..k].as_chunks::<FOUR>(), others[..k].as_chunks::<FOUR>());
+    let (mut sums, mut rest) = ([L::of(0.0); FOUR], L::of(-0.0));
+    for (row, other) in rows.iter().zip(others) {
+        for j in 0..FOUR {
+            sums[j] += L::read(&row[j]) * L::of(other[j][lane]);
+        }
+    }
+    for (row, other) in last.iter().zip(other) {
+        rest += L::read(row) * L::of(other[lane]);
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+/// [`dot`] of each of four rows, column by column in whole fours, with x.
+#[inline(always)]
+fn times<L: Lane>(rows: &[Four], x: &[Four]) -> L {
+    let mut sums = [L::of(0.0); FOUR];
+    for (row, x) in rows.as_chunks::<FOUR>().0.iter().zip(x) {
+        for j in 0..FOUR {
+            sums[j] += L::read(&row[j]) * L::of(x[j]);
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 /// LU factor with row exchanges, and a solution.
@@ -177,39 +250,6 @@ impl Lu {
     pub fn solution(&self) -> &[f64] {
         &self.x[..self.n]
     }
-}
-
-/// Numbers that are multiplied, and rows that are read, at once.
-const FOUR: usize = 4;
-
-/// [`dot`] of each of four rows of n with the same other one, which may be shorter.
-#[inline(always)]
-fn dots<L: Lane>(rows: &[f64], n: usize, other: &[f64]) -> [f64; FOUR] {
-    let (others, last) = other.as_chunks::<FOUR>();
-    let row = |r: usize| &rows[r * n..r * n + other.len()];
-    let chunks = |r: usize| &row(r).as_chunks::<FOUR>().0[..others.len()];
-    let (r0, r1, r2, r3) = (chunks(0), chunks(1), chunks(2), chunks(3));
-    let mut sums = [L::of(0.0); FOUR];
-    for (c, other) in others.iter().enumerate() {
-        let other = L::read(other);
-        sums[0] += L::read(&r0[c]) * other;
-        sums[1] += L::read(&r1[c]) * other;
-        sums[2] += L::read(&r2[c]) * other;
-        sums[3] += L::read(&r3[c]) * other;
-    }
-    let mut rest = [-0.0; FOUR];
-    let start = FOUR * others.len();
-    for (k, b) in last.iter().enumerate() {
-        for (r, rest) in rest.iter_mut().enumerate() {
-            *rest += rows[r * n + start + k] * b;
-        }
-    }
-    let mut out = [0.0; FOUR];
-    for (out, (sum, rest)) in out.iter_mut().zip(sums.iter().zip(&rest)) {
-        let s = sum.numbers();
-        *out = (s[0] + s[1]) + (s[2] + s[3]) + rest;
-    }
-    out
 }
 
 /// In a fixed order of four sums.

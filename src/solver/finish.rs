@@ -5,8 +5,9 @@
 //! unit vector e, so its equations are `u_n = 0` and `e⊥·u_t = 0`, whose derivative with respect to the turn is that of
 //! the velocities plus `−u_t·e / |x_t|`. Discs at their rim follow the normal impulse likewise.
 
-use super::dense::{Cholesky, Lu, dot};
+use super::dense::{Cholesky, Lu, dot, padded};
 use super::inner::Inner;
+use super::products::Products;
 use super::rows::{FINISH_ROWS, Kind, NEARLY, Rows};
 use super::way::{Way, length, shorten};
 use crate::math::{Lane, Lanes4, wide};
@@ -35,14 +36,15 @@ const NONE: usize = usize::MAX;
 /// Memory of the finish.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// `Y Yᵀ + R` of all rows.
+    /// `Y Yᵀ + R` of all rows, [`padded`].
     a: Vec<f64>,
+    products: Products,
     unknowns: Vec<Unknown>,
     /// Per row.
     links: Vec<Link>,
     /// `A` times the impulse of each unknown.
     moved: Vec<f64>,
-    /// What the unknowns do to the equations.
+    /// What the unknowns do to the equations; where nothing slides, [`padded`].
     matrix: Vec<f64>,
     velocity: Vec<f64>,
     /// Right-hand side.
@@ -81,10 +83,11 @@ const FIXED: Link = Link { unknown: NONE, factor: 0.0, follows: NONE, ratio: 0.0
 
 impl Scratch {
     /// Room for this many, so that a finish allocates nothing.
-    pub fn make_room(&mut self, rows: usize) {
+    pub fn make_room(&mut self, rows: usize, width: usize) {
         if rows > FINISH_ROWS || rows <= self.links.len() {
             return;
         }
+        self.products.make_room(rows, width);
         self.lu.make_room(rows);
         self.cholesky.make_room(rows);
         self.found.reserve(rows - self.found.len().min(rows));
@@ -94,7 +97,7 @@ impl Scratch {
             v.resize(rows, 0.0);
         }
         for v in [&mut self.a, &mut self.moved, &mut self.matrix] {
-            v.resize(rows * rows, 0.0);
+            v.resize(rows * padded(rows), 0.0);
         }
     }
 
@@ -133,7 +136,7 @@ impl Scratch {
 
     #[inline(always)]
     fn solve_any<L: Lane>(&mut self, n: usize) {
-        let count = self.unknowns.len();
+        let (count, wide) = (self.unknowns.len(), padded(n));
         if self.links[..n].iter().all(|l| l.follows == NONE) {
             return self.solve_symmetric::<L>(n);
         }
@@ -141,7 +144,8 @@ impl Scratch {
         for row in 0..n {
             for (unknown, factor) in self.moves(row) {
                 if unknown != NONE {
-                    let (to, from) = (&mut self.moved[unknown * n..unknown * n + n], &self.a[row * n..row * n + n]);
+                    let (to, from) =
+                        (&mut self.moved[unknown * n..unknown * n + n], &self.a[row * wide..row * wide + n]);
                     for (to, a) in to.iter_mut().zip(from) {
                         *to += factor * a;
                     }
@@ -161,7 +165,7 @@ impl Scratch {
             row[i] += u.stiffness;
         }
         let (matrix, a) = (&self.matrix[..count * count], &self.a);
-        self.lu.factorise(count, matrix, |i| SOFT * a[unknowns[i].row * (n + 1)]);
+        self.lu.factorise(count, matrix, |i| SOFT * a[unknowns[i].row * (wide + 1)]);
         self.lu.solve::<L>(|i| -along(&unknowns[i], velocity));
         self.lu.refine::<L>(|i, x| -along(&unknowns[i], velocity) - dot::<L>(&matrix[i * count..i * count + count], x));
         self.found.clear();
@@ -174,29 +178,31 @@ impl Scratch {
         let (count, unknowns) = (self.unknowns.len(), &self.unknowns);
         // All rows are unknowns, in their order.
         let whole = count == n;
+        let (from, wide) = (padded(n), padded(count));
         if !whole {
-            for (row, i) in self.matrix.chunks_exact_mut(count.max(1)).zip(unknowns) {
-                let from = &self.a[i.row * n..i.row * n + n];
+            for (row, i) in self.matrix.chunks_exact_mut(wide).zip(unknowns) {
+                let from = &self.a[i.row * from..i.row * from + n];
                 for (to, k) in row.iter_mut().zip(unknowns) {
                     *to = from[k.row];
                 }
             }
         }
-        let matrix = if whole { &self.a[..n * n] } else { &self.matrix[..count * count] };
+        let matrix = if whole { &self.a[..n * wide] } else { &self.matrix[..count * wide] };
         let right = &mut self.right[..count];
         for (right, unknown) in right.iter_mut().zip(unknowns) {
             *right = -self.velocity[unknown.row];
         }
-        let soft = |i: usize| SOFT * matrix[i * count + i];
-        self.cholesky.factorise::<L>(count, |i, k| matrix[i * count + k] + if i == k { soft(i) } else { 0.0 });
+        self.cholesky.factorise::<L>(count, matrix, SOFT);
         self.cholesky.solve::<L>(right);
         self.found.clear();
         self.found.extend_from_slice(self.cholesky.solution());
-        for (right, row) in right.iter_mut().zip(matrix.chunks_exact(count.max(1))) {
-            *right -= dot::<L>(row, &self.found);
+        for (right, row) in right.iter_mut().zip(matrix.chunks_exact(wide)) {
+            *right -= dot::<L>(&row[..count], &self.found);
         }
         self.cholesky.solve::<L>(right);
-        self.found.iter_mut().zip(self.cholesky.solution()).for_each(|(x, more)| *x += more);
+        for (x, more) in self.found.iter_mut().zip(self.cholesky.solution()) {
+            *x += more;
+        }
     }
 }
 
@@ -205,7 +211,7 @@ impl Rows {
     /// never grows, and the number of tries: at most `tries`.
     pub(super) fn finish(&mut self, mut residual: f64, wanted: f64, tries: usize) -> (f64, u32) {
         let mut s = std::mem::take(&mut self.finish);
-        self.fill(&mut s.a);
+        self.fill(&mut s.a, &mut s.products);
         let size = self.rows.len().max(1);
         let most = (TRIES * LARGE.pow(3) / size.pow(3)).clamp(TRIES, MANY).min(tries);
         let (mut tries, mut there) = (0, true);
@@ -220,11 +226,13 @@ impl Rows {
             if !better {
                 // Where the step had only the wrong contacts open, one sweep shows it.
                 self.sweep();
+                self.measure();
                 better = self.lower(&mut residual);
             }
             if !better {
                 self.restore(&s.kept);
                 (0..SWEEPS * tries as u32).for_each(|_| _ = self.sweep());
+                self.measure();
                 better = self.lower(&mut residual);
             }
             there = better;

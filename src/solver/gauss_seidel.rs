@@ -2,7 +2,6 @@
 
 use super::inner::{Inner, within_disc};
 use super::rows::{Block, CHUNK, Kind, Row, Rows};
-use crate::math::wide;
 
 /// What a visit reads and writes besides its block.
 struct Field<'a> {
@@ -23,11 +22,6 @@ impl Rows {
     /// The largest violation of any block as a velocity: how far a step of projected descent would still move it,
     /// `|x − P(x − ρ u)| / ρ`.
     pub fn residual(&self) -> f64 {
-        wide!(Self::residual_any, Rows::residual_any, (this: &Rows = self) -> f64)
-    }
-
-    #[inline(always)]
-    fn residual_any(&self) -> f64 {
         let mut most = 0.0_f64;
         for block in 0..self.blocks.len() {
             most = most.max(self.violation(block));

@@ -1,8 +1,9 @@
 //! A block's own part of `Y Yᵀ + R`: how its rows move each other.
 
 use super::cone::{ConeBlock, Plane, disc};
+use super::dense::dot;
 use super::rows::{Block, CHUNK, Rows};
-use crate::math::wide;
+use crate::math::{Lane, Lanes4, wide};
 
 /// A visit of a block stays near what it had before, by this share of its trace: that moves no solution, and a block that is
 /// held in some direction has one.
@@ -28,32 +29,36 @@ impl Rows {
     }
 
     fn inner(&self, block: usize) -> Inner {
-        wide!(Self::inner_any, Rows::inner_any, (this: &Rows = self, block: usize = block) -> Inner)
+        wide!(
+            Self::inner_any::<Lanes4>,
+            Rows::inner_any::<crate::math::X4<false>>,
+            (this: &Rows = self, block: usize = block) -> Inner
+        )
     }
 
     #[inline(always)]
-    fn inner_any(&self, block: usize) -> Inner {
+    fn inner_any<L: Lane>(&self, block: usize) -> Inner {
         let b = &self.blocks[block];
         match b.rows {
-            1 => single(self.own(b, 0, 0)),
-            2 => pair([self.own(b, 0, 0), self.own(b, 0, 1), self.own(b, 1, 1)]),
+            1 => single(self.own::<L>(b, 0, 0)),
+            2 => pair([self.own::<L>(b, 0, 0), self.own::<L>(b, 0, 1), self.own::<L>(b, 1, 1)]),
             _ => cone([
-                self.own(b, 0, 0),
-                self.own(b, 0, 1),
-                self.own(b, 0, 2),
-                self.own(b, 1, 1),
-                self.own(b, 1, 2),
-                self.own(b, 2, 2),
+                self.own::<L>(b, 0, 0),
+                self.own::<L>(b, 0, 1),
+                self.own::<L>(b, 0, 2),
+                self.own::<L>(b, 1, 1),
+                self.own::<L>(b, 1, 2),
+                self.own::<L>(b, 2, 2),
             ]),
         }
     }
 
     #[inline(always)]
-    fn own(&self, b: &Block, i: usize, k: usize) -> f64 {
+    fn own<L: Lane>(&self, b: &Block, i: usize, k: usize) -> f64 {
         let length = b.ids.len() * CHUNK;
         let y = |n: usize| &self.values[b.values + n * length..b.values + (n + 1) * length];
         let softness = if i == k { self.rows[b.first + i].softness } else { 0.0 };
-        dot(y(i), y(k)) + softness
+        dot::<L>(y(i), y(k)) + softness
     }
 }
 
@@ -72,18 +77,6 @@ fn cone(h: [f64; 6]) -> Inner {
     let more = NEAR * trace;
     let near = [h[0] + more, h[1], h[2], h[3] + more, h[4], h[5] + more];
     if h[0] > DEAD * trace { Inner::Cone(ConeBlock::new(near)) } else { Inner::Off }
-}
-
-/// Of two rows over the same chunks.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = [0.0; CHUNK];
-    for (a, b) in a.chunks_exact(CHUNK).zip(b.chunks_exact(CHUNK)) {
-        for k in 0..CHUNK {
-            sum[k] += a[k] * b[k];
-        }
-    }
-    (sum[0] + sum[1]) + (sum[2] + sum[3])
 }
 
 /// A disc of a pair of rows, or ± the radius of one.

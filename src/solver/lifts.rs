@@ -1,6 +1,7 @@
 //! The position pass on the rows of the velocity pass: pseudo-impulses that undo penetrations, on a w of their own. Only the
 //! first row of a block counts (the normal one of a contact), and its softness does not.
 
+use super::dense::{Cholesky, padded};
 use super::rows::{FINISH_ROWS, Rows, Solved};
 use crate::math::Lanes4;
 
@@ -52,7 +53,9 @@ pub(super) struct Lifts {
 struct Dense {
     /// `Y Yᵀ`.
     a: Vec<f64>,
-    factor: super::dense::Cholesky,
+    factor: Cholesky,
+    /// Of those that have an impulse, [`padded`], softened.
+    matrix: Vec<f64>,
     bias: Vec<f64>,
     x: Vec<f64>,
     velocity: Vec<f64>,
@@ -77,7 +80,7 @@ impl Lifts {
         self.active.reserve(n - self.active.len().min(n));
         self.own.reserve(n - self.own.len().min(n));
         if n <= FINISH_ROWS {
-            self.dense.resize(n);
+            self.dense.make_room(n);
         }
     }
 
@@ -87,8 +90,12 @@ impl Lifts {
 }
 
 impl Dense {
-    fn resize(&mut self, n: usize) {
+    fn make_room(&mut self, n: usize) {
+        if n <= self.x.len() {
+            return;
+        }
         self.a.resize(n * n, 0.0);
+        self.matrix.resize(n * padded(n), 0.0);
         self.factor.make_room(n);
         for v in [&mut self.bias, &mut self.x, &mut self.velocity, &mut self.at] {
             v.resize(n, 0.0);
@@ -155,12 +162,12 @@ impl Rows {
     fn gather_lifts(&self, l: &mut Lifts) {
         l.w.fill(0.0);
         for k in &l.active {
-            self.push_into(&mut l.w, &self.blocks[*k], 0, l.of[*k].impulse);
+            self.push_into::<Lanes4>(&mut l.w, &self.blocks[*k], 0, l.of[*k].impulse);
         }
     }
 
     fn lift_scale(&self, l: &Lifts) -> f64 {
-        let size = |k: &usize| l.of[*k].bias.abs() + self.reach_of(&l.w, &self.blocks[*k], 0).abs();
+        let size = |k: &usize| l.of[*k].bias.abs() + self.reach_of::<Lanes4>(&l.w, &self.blocks[*k], 0).abs();
         l.active.iter().map(size).fold(0.0, f64::max)
     }
 
@@ -168,10 +175,10 @@ impl Rows {
         let mut most = 0.0f64;
         for (k, own) in l.active.iter().zip(&l.own) {
             let (b, lift) = (&self.blocks[*k], &mut l.of[*k]);
-            let x = lift.clipped(lift.impulse - (lift.bias + self.reach_of(&l.w, b, 0)) / own);
+            let x = lift.clipped(lift.impulse - (lift.bias + self.reach_of::<Lanes4>(&l.w, b, 0)) / own);
             let by = x - lift.impulse;
             lift.impulse = x;
-            self.push_into(&mut l.w, b, 0, by);
+            self.push_into::<Lanes4>(&mut l.w, b, 0, by);
             most = most.max(by.abs() * own);
         }
         most
@@ -180,7 +187,8 @@ impl Rows {
     fn lift_residual(&self, l: &Lifts) -> f64 {
         let violation = |(k, own): (&usize, &f64)| {
             let lift = &l.of[*k];
-            let to = lift.clipped(lift.impulse - (lift.bias + self.reach_of(&l.w, &self.blocks[*k], 0)) / own);
+            let to =
+                lift.clipped(lift.impulse - (lift.bias + self.reach_of::<Lanes4>(&l.w, &self.blocks[*k], 0)) / own);
             (lift.impulse - to).abs() * own
         };
         l.active.iter().zip(&l.own).map(violation).fold(0.0, f64::max)
@@ -190,7 +198,7 @@ impl Rows {
     fn finish_lifts(&self, l: &mut Lifts, residual: f64, wanted: f64) -> f64 {
         let mut d = std::mem::take(&mut l.dense);
         let n = l.active.len();
-        d.resize(n);
+        d.make_room(n);
         for i in 0..n {
             for k in 0..=i {
                 let a = self.between((&self.blocks[l.active[i]], 0), (&self.blocks[l.active[k]], 0));
@@ -303,10 +311,13 @@ impl Dense {
         self.free.clear();
         self.free.extend((0..n).filter(|i| self.pushes[*i]));
         let (a, free) = (&self.a, &self.free);
-        self.factor.factorise::<Lanes4>(free.len(), |i, k| {
-            let soft = if i == k { SOFT * own[free[i]] } else { 0.0 };
-            a[free[i] * n + free[k]] + soft
-        });
+        for ((at, row), i) in self.matrix.chunks_exact_mut(padded(free.len())).enumerate().zip(free) {
+            for (to, k) in row.iter_mut().zip(free) {
+                *to = a[i * n + k];
+            }
+            row[at] += SOFT * own[*i];
+        }
+        self.factor.factorise::<Lanes4>(free.len(), &self.matrix, 0.0);
         self.right.clear();
         self.right.extend(free.iter().map(|i| -self.bias[*i]));
         self.factor.solve::<Lanes4>(&self.right);

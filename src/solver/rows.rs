@@ -1,7 +1,7 @@
 //! Constraint rows in factor space: each holds its response y; its velocity is `bias + y·w`, its impulse x moves w by y x.
 
 use super::inner::Inner;
-use crate::math::wide;
+use crate::math::{Lane, Lanes4, wide};
 
 /// Numbers in a chunk of w.
 pub(super) const CHUNK: usize = crate::dynamics::CHUNK;
@@ -94,6 +94,8 @@ pub struct Rows {
     pub(super) ids: Vec<u32>,
     pub(super) values: Vec<f64>,
     pub(super) w: Vec<f64>,
+    /// `y·w` of each row, since w was last gathered or measured.
+    reached: Vec<f64>,
     pub(super) finish: super::finish::Scratch,
     pub(super) lifts: super::lifts::Lifts,
 }
@@ -107,6 +109,7 @@ impl Rows {
             ids: vec![],
             values: vec![],
             w: vec![0.0; width],
+            reached: vec![],
             finish: Default::default(),
             lifts: super::lifts::Lifts::new(width),
         }
@@ -119,8 +122,9 @@ impl Rows {
         self.ids.extend_from_slice(ids);
         self.values.resize(values + rows * ids.len() * CHUNK, 0.0);
         self.rows.resize(first + rows, Row::default());
+        self.reached.resize(first + rows, 0.0);
         self.blocks.push(Block { kind, first, rows, ids: start..self.ids.len(), values, inner: Inner::Off, slip: 0.0 });
-        self.finish.make_room(self.rows.len());
+        self.finish.make_room(self.rows.len(), self.w.len());
         self.lifts.add();
         self.blocks.len() - 1
     }
@@ -129,6 +133,7 @@ impl Rows {
     pub fn truncate(&mut self, blocks: usize) {
         let Some(b) = self.blocks.get(blocks) else { return };
         self.rows.truncate(b.first);
+        self.reached.truncate(b.first);
         self.ids.truncate(b.ids.start);
         self.values.truncate(b.values);
         self.blocks.truncate(blocks);
@@ -219,6 +224,9 @@ impl Rows {
                 break;
             }
         }
+        if solved.sweeps > 0 {
+            self.measure();
+        }
         solved.residual = self.residual();
         if solved.residual > wanted && self.rows.len() <= FINISH_ROWS {
             (solved.residual, solved.tries) = self.finish(solved.residual, wanted, tries);
@@ -226,41 +234,73 @@ impl Rows {
         solved
     }
 
-    /// w of the impulses.
+    /// w of the impulses, and what it does to the rows.
     pub(super) fn gather(&mut self) {
+        if self.rows.iter().all(|row| row.impulse == 0.0) {
+            self.w.fill(0.0);
+            return self.reached.fill(0.0);
+        }
         let mut w = std::mem::take(&mut self.w);
         self.gather_into(&mut w);
         self.w = w;
+        self.measure();
     }
 
     fn gather_into(&self, w: &mut [f64]) {
-        wide!(Self::gather_any, Rows::gather_any, (this: &Rows = self, w: &mut [f64] = w));
+        wide!(Self::gather_any::<Lanes4>, Rows::gather_any::<crate::math::X4<false>>, (this: &Rows = self, w: &mut [f64] = w));
     }
 
     #[inline(always)]
-    fn gather_any(&self, w: &mut [f64]) {
+    fn gather_any<L: Lane>(&self, w: &mut [f64]) {
         w.fill(0.0);
         for b in &self.blocks {
             for (n, row) in self.rows[b.first..b.first + b.rows].iter().enumerate() {
-                self.push_into(w, b, n, row.impulse);
+                self.push_into::<L>(w, b, n, row.impulse);
+            }
+        }
+    }
+
+    /// What w does to the rows, after sweeps.
+    pub(super) fn measure(&mut self) {
+        let mut reached = std::mem::take(&mut self.reached);
+        self.measure_into(&mut reached);
+        self.reached = reached;
+    }
+
+    fn measure_into(&self, out: &mut [f64]) {
+        wide!(
+            Self::measure_any::<Lanes4>,
+            Rows::measure_any::<crate::math::X4<false>>,
+            (this: &Rows = self, out: &mut [f64] = out)
+        );
+    }
+
+    #[inline(always)]
+    fn measure_any<L: Lane>(&self, out: &mut [f64]) {
+        for b in &self.blocks {
+            for (n, out) in out[b.first..b.first + b.rows].iter_mut().enumerate() {
+                *out = self.reach_of::<L>(&self.w, b, n);
             }
         }
     }
 
     /// The velocities that the tolerance is relative to.
     fn scale(&self) -> f64 {
-        let size = |b: &Block| {
-            let of = |n: usize| self.rows[b.first + n].bias.abs() + self.reach(b, n).abs();
-            (0..b.rows).map(of).fold(0.0, f64::max)
-        };
-        self.blocks.iter().filter(|b| !b.is_off()).map(size).fold(0.0, f64::max)
+        let mut most = 0.0_f64;
+        for b in self.blocks.iter().filter(|b| !b.is_off()) {
+            let own = b.first..b.first + b.rows;
+            for (row, reached) in self.rows[own.clone()].iter().zip(&self.reached[own]) {
+                most = most.max(row.bias.abs() + reached.abs());
+            }
+        }
+        most
     }
 
     /// Σ x·(bias + y·w/2) for the w of [`Rows::gather`].
     pub(super) fn work(&self) -> f64 {
         let of = |b: &Block, n: usize| {
             let row = &self.rows[b.first + n];
-            row.impulse * (row.bias + 0.5 * self.reach(b, n))
+            row.impulse * (row.bias + 0.5 * self.reached[b.first + n])
         };
         self.blocks.iter().filter(|b| !b.is_off()).map(|b| (0..b.rows).map(|n| of(b, n)).sum::<f64>()).sum()
     }
@@ -275,36 +315,28 @@ impl Rows {
         self.w.iter().map(|w| w * w).sum()
     }
 
-    /// `y·w`.
-    #[inline(always)]
-    pub(super) fn reach(&self, b: &Block, n: usize) -> f64 {
-        self.reach_of(&self.w, b, n)
-    }
-
     /// `y·w` of a row, with another w.
     #[inline(always)]
-    pub(super) fn reach_of(&self, w: &[f64], b: &Block, n: usize) -> f64 {
-        let mut sum = [0.0; CHUNK];
-        for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).chunks_exact(CHUNK)) {
-            let w = &w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
-            for k in 0..CHUNK {
-                sum[k] += y[k] * w[k];
-            }
+    pub(super) fn reach_of<L: Lane>(&self, w: &[f64], b: &Block, n: usize) -> f64 {
+        let (mut sum, w) = (L::of(0.0), w.as_chunks::<CHUNK>().0);
+        for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).as_chunks::<CHUNK>().0) {
+            sum += L::read(y) * L::read(&w[*id as usize]);
         }
-        (sum[0] + sum[1]) + (sum[2] + sum[3])
+        let s = sum.numbers();
+        (s[0] + s[1]) + (s[2] + s[3])
     }
 
     /// `w += y x`, of another w.
     #[inline(always)]
-    pub(super) fn push_into(&self, w: &mut [f64], b: &Block, n: usize, x: f64) {
+    pub(super) fn push_into<L: Lane>(&self, w: &mut [f64], b: &Block, n: usize, x: f64) {
         if x == 0.0 {
             return;
         }
-        for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).chunks_exact(CHUNK)) {
-            let w = &mut w[*id as usize * CHUNK..*id as usize * CHUNK + CHUNK];
-            for k in 0..CHUNK {
-                w[k] += y[k] * x;
-            }
+        let (x, w) = (L::of(x), w.as_chunks_mut::<CHUNK>().0);
+        for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).as_chunks::<CHUNK>().0) {
+            let w = &mut w[*id as usize];
+            let sum = L::read(w) + L::read(y) * x;
+            w.copy_from_slice(sum.numbers());
         }
     }
 
@@ -319,7 +351,7 @@ impl Rows {
     #[inline(always)]
     pub(super) fn velocity(&self, b: &Block, n: usize) -> f64 {
         let row = &self.rows[b.first + n];
-        row.bias + self.reach(b, n) + row.softness * row.impulse
+        row.bias + self.reached[b.first + n] + row.softness * row.impulse
     }
 }
 

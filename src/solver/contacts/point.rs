@@ -20,8 +20,8 @@ pub(super) struct Point {
     /// In the middle of the step.
     pub(super) placed: Placed,
     pub(super) axes: [V3<f64>; 3],
-    /// Jₘ v₀ along the normal.
-    pub(super) middle_speed: f64,
+    /// Jₘ v₀ as a vector of the world and its normal part.
+    pub(super) middle: (V3<f64>, f64),
     /// Least normal velocity at the end of the step, m/s.
     pub(super) floor: f64,
     /// When in the step it closes by itself and would bounce, s.
@@ -67,9 +67,10 @@ impl Point {
     pub(super) fn place(&mut self, middle: &Kinematics, pass: &Pass) {
         self.placed = self.touch.placed(middle);
         self.axes = axes(self.placed.normal);
-        self.middle_speed = self.placed.normal.dot(approach(middle, &self.touch, self.placed.point));
-        let touching = if pass.mean { self.start.1 - self.middle_speed } else { 0.0 };
-        let closing = if pass.mean { -2.0 * self.gap / pass.h - self.middle_speed } else { -self.gap / pass.h };
+        let u = approach(middle, &self.touch, self.placed.point);
+        self.middle = (u, self.placed.normal.dot(u));
+        let touching = if pass.mean { self.start.1 - self.middle.1 } else { 0.0 };
+        let closing = if pass.mean { -2.0 * self.gap / pass.h - self.middle.1 } else { -self.gap / pass.h };
         self.floor = if self.gap.abs() < CLOSED { touching } else { touching.min(closing) };
     }
 
@@ -134,14 +135,14 @@ impl Point {
     }
 
     /// Velocities without impulses, minus the wanted ones.
-    pub(super) fn aim(&mut self, rows: &mut Rows, middle: &Kinematics, end: &Kinematics) {
+    pub(super) fn aim(&mut self, rows: &mut Rows, end: &Kinematics) {
         let free = approach(end, &self.touch, self.placed.point);
         self.free = self.along(0, free);
         rows.row(self.block, 0).bias = self.free - self.floor;
         if !self.rubs() {
             return;
         }
-        let curve = approach(middle, &self.touch, self.placed.point) - self.start.0;
+        let curve = self.middle.0 - self.start.0;
         for n in [1, 2] {
             rows.row(self.block, n).bias = self.along(n, free + curve);
         }
@@ -171,7 +172,7 @@ impl Point {
     /// When within a step of `h` it closes, if it bounces then and does not come back within the step: else it rests. What counts as
     /// closed has been stopped by the first solve, however short the step: it bounces at once.
     pub(super) fn closes(&self, h: f64) -> Option<f64> {
-        let t = closing(self.gap, self.middle_speed, (self.free - self.middle_speed) / h)?;
+        let t = closing(self.gap, self.middle.1, (self.free - self.middle.1) / h)?;
         let t = if t > h && self.gap.abs() < CLOSED { 0.0 } else { t };
         (t <= h && self.leaves(t, h).0 > 0.0).then_some(t)
     }
@@ -180,7 +181,7 @@ impl Point {
     /// times the speed that it has then, and is slowed down by the same acceleration for the rest of the step. So a bounce neither
     /// gains nor loses by the step.
     fn leaves(&self, t: f64, h: f64) -> (f64, f64) {
-        let (u, a) = (self.middle_speed, (self.free - self.middle_speed) / h);
+        let (u, a) = (self.middle.1, (self.free - self.middle.1) / h);
         let (leaves, rest) = (-self.surface.restitution * (u + a * t), h - t);
         let there = (self.gap + (u + 0.5 * a * t) * t).max(0.0);
         (leaves + a * rest, there + (leaves + 0.5 * a * rest) * rest)

@@ -70,7 +70,7 @@ impl Contacts {
                 least: self.least,
             };
             point.add_cone(&mut target, &self.middle);
-            point.aim(target.rows, &self.middle, &self.end);
+            point.aim(target.rows, &self.end);
             if self.resists_turning {
                 point.add_discs(&mut target, &self.middle, &self.end);
             }
