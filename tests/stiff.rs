@@ -9,7 +9,7 @@ use realnoid::math::Vec3;
 use realnoid::model::{Effects, JointType, Model};
 use realnoid::world::{AxisCommand, Settings, World};
 use std::sync::Arc;
-use support::{ALL, Random, state, tree};
+use support::{ALL, Random, scale, state, tree};
 
 fn world(m: &Model, h: f64) -> World {
     let settings =
@@ -25,15 +25,6 @@ fn run(w: &mut World, seconds: f64) {
 fn total(w: &World) -> f64 {
     let e = w.energy();
     e.kinetic + e.potential
-}
-
-fn scale(m: &mut Model, body: usize, f: f64) {
-    let b = &mut m.bodies[body];
-    (b.mass, b.mc) = (b.mass * f, b.mc * f);
-    let i = &mut b.inertia;
-    for x in [&mut i.xx, &mut i.xy, &mut i.xz, &mut i.yy, &mut i.yz, &mut i.zz] {
-        *x *= f;
-    }
 }
 
 /// Servos of 100, 500 and 1000 Hz on a chain under gravity; an explicit spring would need steps below 3.2, 0.64, 0.32 ms.

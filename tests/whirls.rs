@@ -3,21 +3,19 @@
 
 mod support;
 
-use realnoid::cli::load::{Source, load};
 use realnoid::dynamics::Workspace;
 use realnoid::engine::State;
 use realnoid::model::{Base, JointType, Model};
 use realnoid::solver::{AxisSet, Driven, StateRef, StepStart};
 use realnoid::world::{AxisCommand, Integrator, Settings, World};
 use std::sync::Arc;
-use support::{ALL, Random, state, tree};
+use support::{ALL, Random, scale, state, tree};
 
 const H: f64 = 1e-3;
 const DOWN: [f64; 3] = [0.0, 0.0, -9.80665];
 
 fn humanoid(base: Base) -> Arc<Model> {
-    let urdf = concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/origin.urdf");
-    load(Source { urdf: Some(urdf.as_ref()), packages: &[] }, base).unwrap_or_else(|report| panic!("{report}")).model
+    support::urdf::model(&std::fs::read_to_string("urdf/origin.urdf").unwrap(), base)
 }
 
 /// Torques, servos that may reach the speed that they want in a step and others that may not, and drives at rest.
@@ -110,13 +108,8 @@ fn a_humanoid_under_noisy_torques_keeps_its_steps() {
 #[test]
 fn whips_still_whirl() {
     let mut m = tree(&[JointType::Revolute; 6], true, 2);
-    for (i, b) in m.bodies.iter_mut().enumerate() {
-        let f = 0.1_f64.powi(i as i32);
-        (b.mass, b.mc) = (b.mass * f, b.mc * f);
-        let s = &mut b.inertia;
-        for x in [&mut s.xx, &mut s.xy, &mut s.xz, &mut s.yy, &mut s.yz, &mut s.zz] {
-            *x *= f;
-        }
+    for body in 1..m.bodies.len() {
+        scale(&mut m, body, 0.1_f64.powi(body as i32));
     }
     let mut w = euler(Arc::new(m.clone()));
     let mut s = State::initial(&m);

@@ -196,10 +196,10 @@ impl Rbx {
     /// Goes on with what is left of the model; what it remembers of each axis stays. Allocates.
     pub fn refit(&mut self, left: &Model, state: State, integrator: Integrator) {
         let mut next = Self::new(left);
-        next.prepare(left, integrator);
         next.state = state;
         next.axes = self.axes.clone();
         next.axes.refit(left);
+        next.prepare(left, integrator);
         *self = next;
     }
 }

@@ -264,6 +264,11 @@ pub(super) fn dot<L: Lane>(a: &[f64], b: &[f64]) -> f64 {
     for (a, b) in a.iter().zip(b) {
         rest += a * b;
     }
-    let s = sum.numbers();
-    (s[0] + s[1]) + (s[2] + s[3]) + rest
+    across(sum.numbers()) + rest
+}
+
+/// The sum of four lanes, in a fixed order.
+#[inline(always)]
+pub(super) fn across(s: &[f64]) -> f64 {
+    (s[0] + s[1]) + (s[2] + s[3])
 }

@@ -1,5 +1,6 @@
 //! Projected Gauss–Seidel over blocks, in factor space: a block sees all others through w alone.
 
+use super::dense::across;
 use super::inner::{Inner, within_disc};
 use super::rows::{Block, CHUNK, Kind, Row, Rows};
 
@@ -122,10 +123,7 @@ impl Field<'_> {
                 (0..CHUNK).for_each(|k| sum[n][k] += y[n][i][k] * w[k]);
             }
         }
-        let u = std::array::from_fn(|n| {
-            let s = sum[n];
-            rows[n].bias + ((s[0] + s[1]) + (s[2] + s[3])) + rows[n].softness * x[n]
-        });
+        let u = std::array::from_fn(|n| rows[n].bias + across(&sum[n]) + rows[n].softness * x[n]);
         let to = solve(self.rows, u, x);
         let by: [f64; N] = std::array::from_fn(|n| to[n] - x[n]);
         let most = by.iter().fold(0.0f64, |m, x| m.max(x.abs()));

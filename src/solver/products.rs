@@ -1,6 +1,6 @@
 //! Products of rows, `Y Yᵀ`: how an impulse of one moves another.
 
-use super::dense::padded;
+use super::dense::{across, padded};
 use super::rows::{Block, CHUNK, Rows};
 use crate::math::{Lane, Lanes4, wide};
 use std::ops::Range;
@@ -205,8 +205,7 @@ fn one<L: Lane>(y: &[Chunk], z: &[Chunk], both: &[(usize, usize)]) -> f64 {
     for (i, k) in both {
         sum += L::read(&y[*i]) * L::read(&z[*k]);
     }
-    let s = sum.numbers();
-    (s[0] + s[1]) + (s[2] + s[3])
+    across(sum.numbers())
 }
 
 /// The same of one row with four that are turned.

@@ -1,9 +1,9 @@
 //! The axis set after joints have come apart, or have been made whole again.
 
+use super::AxisSet;
 use super::between::Between;
 use super::couplings::Couplings;
 use super::mobility::Answers;
-use super::{AxisSet, Driven};
 use crate::model::{AxisSlot, Model};
 
 impl AxisSet {
@@ -17,7 +17,6 @@ impl AxisSet {
         self.between = Between::all(m);
         self.laws.iter_mut().for_each(|law| law.plain = false);
         self.answers = Some(Box::new(Answers::new(m)));
-        self.driven = self.driven.take().map(|_| Box::new(Driven::new(m)));
         for (i, axis) in m.axes.iter().enumerate() {
             if matches!(axis.slot, AxisSlot::Apart { .. }) {
                 (self.memory[i], self.books.effort[i], self.speed[i]) = (0, 0.0, 0.0);

@@ -1,5 +1,6 @@
 //! Constraint rows in factor space: each holds its response y; its velocity is `bias + y·w`, its impulse x moves w by y x.
 
+use super::dense::across;
 use super::inner::Inner;
 use crate::math::{Lane, Lanes4, wide};
 
@@ -322,8 +323,7 @@ impl Rows {
         for (id, y) in self.ids[b.ids.clone()].iter().zip(self.numbers(b, n).as_chunks::<CHUNK>().0) {
             sum += L::read(y) * L::read(&w[*id as usize]);
         }
-        let s = sum.numbers();
-        (s[0] + s[1]) + (s[2] + s[3])
+        across(sum.numbers())
     }
 
     /// `w += y x`, of another w.

@@ -104,6 +104,16 @@ fn body(rng: &mut Random, parent: usize, joint: JointType) -> Body {
     }
 }
 
+/// Mass and inertia of a body times f.
+pub fn scale(m: &mut Model, body: usize, f: f64) {
+    let b = &mut m.bodies[body];
+    (b.mass, b.mc) = (b.mass * f, b.mc * f);
+    let i = &mut b.inertia;
+    for x in [&mut i.xx, &mut i.xy, &mut i.xz, &mut i.yy, &mut i.yz, &mut i.zz] {
+        *x *= f;
+    }
+}
+
 fn add_axes(m: &mut Model) {
     m.links.push(LinkInfo {
         name: "root".into(),

@@ -7,6 +7,11 @@ use std::path::{Path, PathBuf};
 /// Steps of the suite, ns.
 pub const STEPS: [i64; 6] = [10_000_000, 5_000_000, 2_000_000, 1_000_000, 500_000, 100_000];
 
+/// Of a step in ns. Divided: a product with 1e-6 would write 0.1 as 0.09999999999999999.
+pub(super) fn milliseconds(step: i64) -> f64 {
+    step as f64 / 1e6
+}
+
 /// What a case is run with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
@@ -149,7 +154,7 @@ impl Entry {
                     wrong.push(format!(
                         "{case} with {} at {} ms: {}: {name}: {error:.2e} of {allowed:.2e}",
                         row.column.name(),
-                        *step as f64 / 1e6,
+                        milliseconds(*step),
                         verdict.name()
                     ));
                 }

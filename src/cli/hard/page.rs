@@ -1,6 +1,6 @@
 //! The grid for people: tables, a page, CSV.
 
-use super::grid::{Cell, Entry, Grid, Row, Verdict};
+use super::grid::{Cell, Entry, Grid, Row, Verdict, milliseconds};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -51,7 +51,7 @@ fn summed(row: &Row) -> String {
 fn of_case(e: &Entry, steps: &[i64]) -> String {
     let mut text = format!("\n### {}\n\n{}\n\n", e.case.name, e.case.shows);
     let _ = write!(text, "| |");
-    steps.iter().for_each(|s| text += &format!(" {} ms |", *s as f64 / 1e6));
+    steps.iter().for_each(|s| text += &format!(" {} ms |", milliseconds(*s)));
     let _ = writeln!(text, "\n|---|{}", "---|".repeat(steps.len()));
     for row in &e.rows {
         let _ = write!(text, "| {} |", row.column.name());
@@ -86,7 +86,7 @@ fn counters(e: &Entry, steps: &[i64]) -> String {
             if *verdict != Verdict::Good {
                 let counted: Vec<String> = told.iter().map(|(name, n)| format!("{name} {n}")).collect();
                 let counted = if counted.is_empty() { "nothing counted".into() } else { counted.join(", ") };
-                let (name, ms) = (&e.case.expectations[*which].name, *step as f64 / 1e6);
+                let (name, ms) = (&e.case.expectations[*which].name, milliseconds(*step));
                 let _ = writeln!(text, "- {} at {ms} ms, {name}: {counted}", row.column.name());
             }
         }
@@ -100,7 +100,7 @@ pub fn tables(g: &Grid) -> String {
     for e in &g.entries {
         let _ = writeln!(text, "{}: {}", e.case.name, e.case.shows);
         let _ = write!(text, "  {:<22}", "ms");
-        g.steps.iter().for_each(|s| text += &format!(" {:>22}", *s as f64 / 1e6));
+        g.steps.iter().for_each(|s| text += &format!(" {:>22}", milliseconds(*s)));
         text += "\n";
         for row in &e.rows {
             let _ = write!(text, "  {:<22}", row.column.name());
