@@ -1,5 +1,6 @@
 //! Aliases over nalgebra's f64 types, frames, and the kernel's own small types.
 
+mod flat;
 pub mod frames;
 mod lanes;
 mod real;
@@ -9,6 +10,7 @@ mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub use flat::Flat;
 pub use lanes::{Lane, Lanes4};
 pub use real::{Fma, Real};
 pub use sincos::sin_cos;
