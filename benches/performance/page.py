@@ -15,7 +15,7 @@ REASONS = {
     "ground": "no part dominates: the rows of the contacts, their sweeps and their direct finish (an exact, round cone; MuJoCo stops at a soft pyramid), the pass of the "
     "dynamics, the poses and the laws of the axes share it.",
     "depth": "see the raw figures.",
-    "chain5": "at the finest steps our own error is rounding, which no integrator gets below; see the table at the end and docs/accuracy.md.",
+    "chain5": "at the finest steps our own error is rounding, grown by two chaotic seconds; see the table at the end and docs/accuracy.md.",
 }
 
 

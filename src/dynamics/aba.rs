@@ -14,7 +14,7 @@ use super::hybrid::mixed;
 use super::joint::{axis_z, bias, carried, joint_transform, joint_velocity, turned, turned_outward, universal_axis};
 use super::limbs::Limbs;
 use super::turn::with_turn;
-use crate::math::{Flat, Fma, M3, Real, V3};
+use crate::math::{Flat, M3, Real, V3};
 use crate::model::{Body, JointType, Model};
 
 /// Frame and motion of a body; its velocity gives way to its acceleration in the last pass.
@@ -57,7 +57,7 @@ pub struct Workspace<T> {
     pub dofs: Vec<DofIn<T>>,
     /// Inputs of the hybrid dynamics, one per spherical joint.
     pub ball_in: Vec<BallIn<T>>,
-    /// Torque that keeps a locked velocity coordinate to its acceleration (filled by [`aba_hybrid`]).
+    /// Torque that keeps a locked velocity coordinate to its acceleration (filled by [`super::aba_hybrid`]).
     pub reaction: Vec<T>,
     /// Bodies that the hybrid dynamics damp.
     pub(crate) damped: Vec<Damped<T>>,
@@ -68,7 +68,7 @@ pub struct Workspace<T> {
     pub active: Vec<(usize, usize)>,
     /// Per body: where what it collects comes from.
     sums: Vec<Sum>,
-    /// For [`aba_hybrid`], if limbs are computed side by side.
+    /// For [`super::aba_hybrid`], if limbs are computed side by side.
     pub(super) limbs: Option<Box<Limbs>>,
     /// Per velocity, of lanes only: 1 in the lanes that are plain, if others are not.
     pub(super) mixed: Vec<Option<T>>,
@@ -102,7 +102,7 @@ impl<T: Real> Workspace<T> {
         Self { mixed: vec![None; model.nv], ..Self::new(model) }
     }
 
-    /// From now on [`aba_hybrid`] computes limbs side by side, where all bodies take part and none is damped. The bits stay
+    /// From now on [`super::aba_hybrid`] computes limbs side by side, where all bodies take part and none is damped. The bits stay
     /// the same. False if that does not pay for this model, or cannot be done on this machine.
     pub fn put_side_by_side(&mut self, m: &Model) -> bool {
         self.limbs = Limbs::new(m).filter(Limbs::pays).map(Box::new);
@@ -139,43 +139,6 @@ pub fn aba(
     qdd: &mut [f64],
 ) {
     kernel::<f64, false>(m, ws, state, tau, V3::from(gravity), qdd);
-}
-
-/// As [`aba`], with fused multiply-add: about a tenth faster, other last bits. `false` if the machine has no FMA; nothing
-/// is computed then.
-#[must_use]
-pub fn aba_fused(
-    m: &Model,
-    ws: &mut Workspace<Fma>,
-    state: (&[f64], &[f64]),
-    tau: &[f64],
-    gravity: [f64; 3],
-    qdd: &mut [f64],
-) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-        let (q, v) = (fma_slice(state.0), fma_slice(state.1));
-        // SAFETY: the machine has just been asked for both features.
-        unsafe { fused(m, ws, (q, v), fma_slice(tau), gravity, fma_slice_mut(qdd)) };
-        return true;
-    }
-    false
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn fused(m: &Model, ws: &mut Workspace<Fma>, state: (&[Fma], &[Fma]), tau: &[Fma], gravity: [f64; 3], qdd: &mut [Fma]) {
-    kernel::<Fma, false>(m, ws, state, tau, V3::of(V3::from(gravity)), qdd);
-}
-
-fn fma_slice(x: &[f64]) -> &[Fma] {
-    // SAFETY: Fma is repr(transparent) over f64.
-    unsafe { std::slice::from_raw_parts(x.as_ptr().cast(), x.len()) }
-}
-
-fn fma_slice_mut(x: &mut [f64]) -> &mut [Fma] {
-    // SAFETY: Fma is repr(transparent) over f64, and the borrow is exclusive.
-    unsafe { std::slice::from_raw_parts_mut(x.as_mut_ptr().cast(), x.len()) }
 }
 
 #[inline(always)]

@@ -25,11 +25,12 @@ mod layout;
 mod limbs;
 mod response;
 mod rnea;
+mod scalars;
 mod together;
 mod turn;
 mod velocities;
 
-pub use aba::{Dof, Workspace, aba, aba_fused};
+pub use aba::{Dof, Workspace, aba};
 pub use ball::{BallIn, BallLock};
 pub use batch::{AbaBatch, LaneKind};
 pub use check::singular_axes;
@@ -47,6 +48,7 @@ pub use layout::{CHUNK, Layout};
 pub use limbs::{Limbs, aba_limbs};
 pub use response::{Mobility, Push, Response};
 pub use rnea::rnea;
+pub use scalars::{aba_fused, aba_twofold};
 pub use together::{Asked, Turn, own_turn, take_turns};
 pub use velocities::velocities_of;
 

@@ -6,6 +6,7 @@ mod lanes;
 mod real;
 mod sincos;
 mod small;
+mod twofold;
 mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
@@ -15,6 +16,7 @@ pub use lanes::{Lane, Lanes4};
 pub use real::{Fma, Real};
 pub use sincos::sin_cos;
 pub use small::{M3, S3, V3};
+pub use twofold::Twofold;
 pub(crate) use wide::wide;
 #[cfg(target_arch = "x86_64")]
 pub use x86::{X4, X8};
