@@ -308,6 +308,25 @@ fn common_passes_leave_the_same_bits_behind() {
     }
 }
 
+/// A pass that leaves no factor leaves the same accelerations, reactions and mobilities; rows would not be numbers, and are again after the next.
+#[test]
+fn frugal_passes_leave_no_factor() {
+    for m in branched().iter().filter(|m| Workspace::<f64>::new(m).put_side_by_side(m)) {
+        let (mut rng, mut ws, mut frugal) = (Random(5), Workspace::new(m), Workspace::new(m));
+        frugal.put_side_by_side(m);
+        for frugally in [true, false] {
+            let (q, v) = state(m, &mut rng, 2.0);
+            inputs(&mut ws, 0.5, &mut rng);
+            (frugal.dofs, frugal.ball_in, frugal.frugal) = (ws.dofs.clone(), ws.ball_in.clone(), frugally);
+            let (whole, mut other) = (outcome(m, &mut ws, (&q, &v)), outcome(m, &mut frugal, (&q, &v)));
+            let kept = if frugally { 3 * m.nv } else { whole.len() };
+            assert!(!frugally || other[kept..].iter().any(|x| x.is_nan()));
+            other.truncate(kept);
+            assert_eq!(bits(&other), bits(&whole[..kept]));
+        }
+    }
+}
+
 /// What stands on the world may be moved between two passes.
 #[test]
 fn a_base_that_is_moved_is_seen() {

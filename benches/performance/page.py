@@ -8,8 +8,8 @@ REASONS = {
     "limbs": "the time is that of the longest limb: bodies behind each other cannot be computed together.",
     "lanes4": "the lanes are full; what is left is the spilling of values that do not fit into the registers.",
     "lanes8": "the lanes are full; what is left is spilling and the cache.",
-    "turns4": "a third of the time is that of the pass; the rest is copying everything in and out, and the turns.",
-    "turns8": "a third of the time is that of the pass; the rest is copying everything in and out, and the turns.",
+    "turns4": "the pass itself is as above; the rest is copying everything in and out, and the turns.",
+    "turns8": "the pass itself is as above; the rest is copying everything in and out, and the turns.",
     "chain": "bodies in a row cannot be computed side by side, and the working set of so many is larger than the first cache. `aba_fused` is nearer, with other last bits.",
     "air": "the pass of the dynamics is the smaller part; poses of all links, the laws of all axes with their stops, and the check whether every axis fits its law are the rest.",
     "ground": "no part dominates: the rows of the contacts, their sweeps and their direct finish (an exact, round cone; MuJoCo stops at a soft pyramid), the pass of the "

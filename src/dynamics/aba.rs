@@ -59,6 +59,11 @@ pub struct Workspace<T> {
     pub ball_in: Vec<BallIn<T>>,
     /// Torque that keeps a locked velocity coordinate to its acceleration (filled by [`super::aba_hybrid`]).
     pub reaction: Vec<T>,
+    /// The next pass of [`super::aba_hybrid`] need not leave the factor behind that [`super::Response`] takes over: where bodies or robots
+    /// are computed side by side, that is a sixth of the time or more. Accelerations, reactions and mobilities are there in any case.
+    pub frugal: bool,
+    /// It has not.
+    pub(super) bare: bool,
     /// Bodies that the hybrid dynamics damp.
     pub(crate) damped: Vec<Damped<T>>,
     /// Per body, if any is damped: room for [`super::damping_powers`].
@@ -88,6 +93,8 @@ impl<T: Real> Workspace<T> {
             dofs: vec![DofIn::free(o); nv],
             ball_in: vec![BallIn::default(); model.balls],
             reaction: vec![o; nv],
+            frugal: false,
+            bare: false,
             damped: Vec::with_capacity(model.dampings.len()),
             wrenches: vec![Spatial::default(); if model.dampings.is_empty() { 0 } else { n }],
             active: vec![(1, n)],

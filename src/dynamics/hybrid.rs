@@ -39,6 +39,7 @@ fn hybrid_side_by_side(
     match ws.limbs.take() {
         Some(mut limbs) if whole => {
             hybrid_limbs(m, (ws, &mut limbs), state, gravity, qdd);
+            ws.bare = ws.frugal;
             ws.limbs = Some(limbs);
         }
         limbs => {
@@ -51,6 +52,7 @@ fn hybrid_side_by_side(
 /// One body after the other. By itself, so that the compiler sees the kernel alone.
 #[inline(never)]
 fn hybrid_in_turn(m: &Model, ws: &mut Workspace<f64>, state: (&[f64], &[f64]), gravity: [f64; 3], qdd: &mut [f64]) {
+    ws.bare = false;
     kernel::<f64, true>(m, ws, state, &[], V3::from(gravity), qdd);
 }
 

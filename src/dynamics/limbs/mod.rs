@@ -182,7 +182,9 @@ fn solve<const HYBRID: bool>(
             qdd[step.v[lane]] = acceleration.numbers()[lane];
             if HYBRID {
                 ws.reaction[step.v[lane]] = reaction.numbers()[lane];
-                ws.kin[step.body[lane]] = single_kin(&kin[s], lane);
+                if !ws.frugal {
+                    ws.kin[step.body[lane]] = single_kin(&kin[s], lane);
+                }
             }
         }
     }
@@ -285,6 +287,10 @@ fn single_kin(k: &Kin<X>, lane: usize) -> Kin<f64> {
 /// What the elimination leaves, to where it is read after the pass.
 fn export_dof(ws: &mut Workspace<f64>, step: &Step, dof: &Dof<X>) {
     for lane in (0..LANES).filter(|lane| step.own[*lane]) {
+        if ws.frugal {
+            ws.dof[step.v[lane]].d = dof.d.numbers()[lane];
+            continue;
+        }
         let to = ws.dof[step.v[lane]].numbers_of_mut();
         to.iter_mut().zip(dof.numbers_of()).for_each(|(to, from)| *to = from.numbers()[lane]);
     }

@@ -82,11 +82,19 @@ impl<T: Lane> Lanes<T> {
         // SAFETY: as above.
         take(&self.qdd, requests, |request| unsafe { &mut *request.qdd.as_ptr() });
         take(&self.ws.reaction, requests, |r| &mut each(r).reaction);
-        take(Flat::flat(&self.ws.kin), requests, |r| Flat::flat_mut(&mut each(r).kin));
-        take(Flat::flat(&self.ws.dof), requests, |r| Flat::flat_mut(&mut each(r).dof));
         take(Flat::flat(&self.ws.balls), requests, |r| Flat::flat_mut(&mut each(r).balls));
-        for i in &self.floating {
-            take(self.ws.acc[*i].numbers_of(), requests, |r| each(r).acc[*i].numbers_of_mut());
+        if requests.iter().all(|r| each(r).frugal) {
+            for (k, dof) in self.ws.dof.iter().enumerate() {
+                requests.iter().zip(dof.d.numbers()).for_each(|(r, d)| each(r).dof[k].d = *d);
+            }
+            requests.iter().for_each(|r| each(r).bare = true);
+        } else {
+            take(Flat::flat(&self.ws.kin), requests, |r| Flat::flat_mut(&mut each(r).kin));
+            take(Flat::flat(&self.ws.dof), requests, |r| Flat::flat_mut(&mut each(r).dof));
+            for i in &self.floating {
+                take(self.ws.acc[*i].numbers_of(), requests, |r| each(r).acc[*i].numbers_of_mut());
+            }
+            requests.iter().for_each(|r| each(r).bare = false);
         }
         for (ball, from) in self.ws.ball_in.iter().enumerate() {
             for (n, lock) in from.lock[..from.locks].iter().enumerate() {
