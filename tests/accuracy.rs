@@ -14,6 +14,11 @@ fn case(name: &str) -> Case {
     cases().into_iter().find(|c| c.name == name).unwrap()
 }
 
+/// No curves: just the reference.
+fn nobody() -> Wish {
+    Wish::new(&["rbx".to_owned()], &["rk4".to_owned()], (&[0.008], true)).unwrap()
+}
+
 fn of_rbx(name: &str, integrators: &[&str], dt: &[f64]) -> Measured {
     let names = |list: &[&str]| -> Vec<String> { list.iter().map(|s| (*s).to_owned()).collect() };
     let wish = Wish::new(&names(&["rbx"]), &names(integrators), (dt, true)).unwrap();
@@ -29,6 +34,19 @@ fn rules_have_their_orders() {
             let fit = curve.fit(m.case.size, m.reference.own).unwrap();
             assert!((fit.order - order).abs() < 0.2, "{name}, {}: {fit:?}", curve.label);
         }
+    }
+}
+
+/// Numbers of twice the digits, and rbx with 128 steps of RK4 in a millisecond: two programs of one motion, as long as it is not chaotic.
+#[test]
+fn references_of_two_kinds_agree() {
+    let twofold = Measured::of(case("chain5"), &nobody(), QUICK).unwrap().reference;
+    let truth = Truth::Own { integrator: Integrator::Rk4, steps_per_ms: 128 };
+    let own =
+        Measured::of(Case { truth, ..case("chain5") }, &nobody(), Care { quick: false, ..QUICK }).unwrap().reference;
+    assert!(twofold.own < 1e-14 && twofold.words.contains("twice the digits"), "{}, {}", twofold.own, twofold.words);
+    for (k, (a, b)) in twofold.values.iter().zip(&own.values).enumerate() {
+        assert!(case("chain5").distance(a, b) < 1e-12, "after {} instants: {a:?} {b:?}", k + 1);
     }
 }
 

@@ -3,10 +3,11 @@
 
 mod support;
 
-use realnoid::dynamics::{AbaBatch, CHUNK, DofIn, Kinematics, LaneKind, Limbs, Push, Response};
-use realnoid::dynamics::{Workspace, aba, aba_fused, aba_hybrid, aba_limbs, kinematics, kinematics_of};
+use realnoid::dynamics::{AbaBatch, BallIn, CHUNK, DofIn, Kinematics, LaneKind, Limbs, Push, Response};
+use realnoid::dynamics::{Workspace, aba, aba_fused, aba_hybrid, aba_limbs, kinematics, kinematics_of, take_turns};
 use realnoid::math::{M3, V3};
 use realnoid::model::{JointType, Model};
+use std::sync::Arc;
 use support::{ALL, Random, state, tree};
 
 const GRAVITY: [f64; 3] = [0.3, -0.2, -9.81];
@@ -226,6 +227,12 @@ fn inputs(ws: &mut Workspace<f64>, share: f64, rng: &mut Random) {
             _ => DofIn::free(tau),
         };
     }
+    for (n, input) in ws.ball_in.iter_mut().enumerate() {
+        *input = BallIn { tau: rng.vec3(5.0).into(), ..BallIn::default() };
+        for _ in 0..if share > 0.0 { (rng.next() as usize + n) % 4 } else { 0 } {
+            input.add_lock(rng.vec3(1.0).into(), rng.unit());
+        }
+    }
 }
 
 /// All that is read after a pass: accelerations, reactions, mobilities, and a row of every body.
@@ -234,6 +241,8 @@ fn outcome(m: &Model, ws: &mut Workspace<f64>, (q, v): (&[f64], &[f64])) -> Vec<
     aba_hybrid(m, ws, (q, v), GRAVITY, &mut out);
     out.extend_from_slice(&ws.reaction);
     out.extend((0..m.nv).map(|v| ws.mobility(v)));
+    out.extend(ws.ball_in.iter().flat_map(|b| b.lock[..b.locks].iter().map(|lock| lock.reaction)));
+    out.extend((0..m.balls).map(|ball| ws.ball_mobility(ball, V3::new(0.3, -0.5, 0.7))));
     response.refresh(m, ws);
     for body in 1..m.bodies.len() {
         let (torque, force) = (V3::new(0.3, -0.2, 0.9), V3::new(1.0, 0.4, -0.7));
@@ -255,12 +264,67 @@ fn hybrid_dynamics_leave_the_same_bits_behind() {
         for share in [0.0, 0.3, 0.7, 1.3, 2.0, 0.0] {
             let (q, v) = state(m, &mut rng, 2.0);
             inputs(&mut one, share, &mut rng);
-            four.dofs.clone_from(&one.dofs);
+            (four.dofs, four.ball_in) = (one.dofs.clone(), one.ball_in.clone());
             let (a, b) = (outcome(m, &mut one, (&q, &v)), outcome(m, &mut four, (&q, &v)));
             assert_eq!(bits(&a), bits(&b), "model {n}, {share} of the inputs not plain");
         }
     }
     assert!(side_by_side > 10 || Limbs::new(&branched()[1]).is_none(), "only {side_by_side}");
+}
+
+/// Robots that ask in turns get one pass, and find in their workspaces what they would find alone: of any joints, with any locks.
+#[test]
+fn common_passes_leave_the_same_bits_behind() {
+    let all: Vec<Arc<Model>> = models().into_iter().chain(branched()).map(Arc::new).collect();
+    for (n, m) in all.iter().enumerate() {
+        let task = |seed: u64| {
+            let m = m.clone();
+            move || {
+                let (mut rng, mut ws, mut all) = (Random(seed), Workspace::new(&m), vec![]);
+                for share in [0.0, 0.5, 0.5, 1.3, 2.0] {
+                    let (q, v) = state(&m, &mut rng, 2.0);
+                    inputs(&mut ws, share, &mut rng);
+                    all.extend(bits(&outcome(&m, &mut ws, (&q, &v))));
+                }
+                all
+            }
+        };
+        for kind in LaneKind::ALL.into_iter().filter(|kind| kind.is_available()) {
+            let (mut left, mut found) = ((0..11).map(|k| (k, task(k))), 0);
+            let next = || left.next().map(|(k, task)| move || (k, task()));
+            let asked = take_turns(
+                (kind, kind.width()),
+                || 0.0,
+                next,
+                |(k, all)| {
+                    assert!(all == task(k)(), "model {n}, robot {k}, {kind:?}");
+                    found += 1;
+                },
+            );
+            assert_eq!((found, asked.all), (11, 55));
+            let all = asked.together == 55 || m.balls > 0 && asked.together >= kind.width() as u64;
+            assert!(all, "model {n}: {asked:?}");
+        }
+    }
+}
+
+/// A pass that leaves no factor leaves the same accelerations, reactions and mobilities; rows would not be numbers, and are again after the next.
+#[test]
+fn frugal_passes_leave_no_factor() {
+    for m in branched().iter().filter(|m| Workspace::<f64>::new(m).put_side_by_side(m)) {
+        let (mut rng, mut ws, mut frugal) = (Random(5), Workspace::new(m), Workspace::new(m));
+        frugal.put_side_by_side(m);
+        for frugally in [true, false] {
+            let (q, v) = state(m, &mut rng, 2.0);
+            inputs(&mut ws, 0.5, &mut rng);
+            (frugal.dofs, frugal.ball_in, frugal.frugal) = (ws.dofs.clone(), ws.ball_in.clone(), frugally);
+            let (whole, mut other) = (outcome(m, &mut ws, (&q, &v)), outcome(m, &mut frugal, (&q, &v)));
+            let kept = if frugally { 3 * m.nv } else { whole.len() };
+            assert!(!frugally || other[kept..].iter().any(|x| x.is_nan()));
+            other.truncate(kept);
+            assert_eq!(bits(&other), bits(&whole[..kept]));
+        }
+    }
 }
 
 /// What stands on the world may be moved between two passes.

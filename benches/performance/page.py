@@ -8,12 +8,14 @@ REASONS = {
     "limbs": "the time is that of the longest limb: bodies behind each other cannot be computed together.",
     "lanes4": "the lanes are full; what is left is the spilling of values that do not fit into the registers.",
     "lanes8": "the lanes are full; what is left is spilling and the cache.",
+    "turns4": "the pass itself is as above; the rest is copying everything in and out, and the turns.",
+    "turns8": "the pass itself is as above; the rest is copying everything in and out, and the turns.",
     "chain": "bodies in a row cannot be computed side by side, and the working set of so many is larger than the first cache. `aba_fused` is nearer, with other last bits.",
     "air": "the pass of the dynamics is the smaller part; poses of all links, the laws of all axes with their stops, and the check whether every axis fits its law are the rest.",
     "ground": "no part dominates: the rows of the contacts, their sweeps and their direct finish (an exact, round cone; MuJoCo stops at a soft pyramid), the pass of the "
     "dynamics, the poses and the laws of the axes share it.",
     "depth": "see the raw figures.",
-    "chain5": "at the finest steps our own error is rounding, which no integrator gets below; see the table at the end and docs/accuracy.md.",
+    "chain5": "at the finest steps our own error is rounding, grown by two chaotic seconds; see the table at the end and docs/accuracy.md.",
 }
 
 
@@ -32,6 +34,8 @@ def goals(f):
         ("limbs", "its limbs side by side (`aba_limbs`), the bits of `aba`", 0.20, g1("aba_limbs"), pin, "Pinocchio's `aba`"),
         ("lanes4", "4 robots side by side (AVX2), each, the bits of `aba`", 0.10, g1("aba_lanes_4"), pin, "Pinocchio's `aba`"),
         ("lanes8", "8 robots side by side (AVX-512), each, the bits of `aba`", 0.06, g1("aba_lanes_8"), pin, "Pinocchio's `aba`"),
+        ("turns4", "4 worlds of a sweep in one pass (AVX2), each, with all copying and turns (`aba_turns_4`)", 0.10, g1("aba_turns_4"), pin, "Pinocchio's `aba`"),
+        ("turns8", "8 worlds of a sweep in one pass (AVX-512), each, with all copying and turns (`aba_turns_8`)", 0.06, g1("aba_turns_8"), pin, "Pinocchio's `aba`"),
         ("chain", "ABA of a chain of 200 hinges (`aba`)", 0.36, f.median("chain200", "aba"), chain, "Pinocchio's `aba`"),
     ]
     step = min(("step_implicit_midpoint", "step_semi_implicit_euler"), key=g1)

@@ -260,9 +260,12 @@ pub struct SweepArgs {
     /// The table; SPEC.csv, or SPEC.shard-I-of-N.csv, in the working folder, if none is named.
     #[arg(long, value_name = "FILE.csv")]
     pub out: Option<PathBuf>,
-    /// Worlds at once; one per core, if nothing is said.
+    /// Threads; one per core, if nothing is said.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub jobs: Option<u32>,
+    /// Steps each world by itself, not several of a thread side by side in vector registers: the same rows, but for the times.
+    #[arg(long)]
+    pub alone: bool,
     /// Only every N-th world, from I (from 0) on.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<crate::cli::sweep::Shard>,
@@ -273,7 +276,7 @@ pub struct SweepArgs {
     #[arg(long, value_name = "DIR", conflicts_with = "bags")]
     pub tables: Option<PathBuf>,
     /// Instead: puts the tables of shards together, in the order of worlds.
-    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["out", "jobs", "shard", "bags", "tables"])]
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["out", "jobs", "alone", "shard", "bags", "tables"])]
     pub merge: Option<PathBuf>,
 }
 

@@ -3,8 +3,10 @@
 use super::args::BenchArgs;
 use super::base_by_name;
 use super::load::load_or_say;
+use super::stopwatch::wall_seconds;
 use crate::dynamics::{
-    AbaBatch, Kinematics, LaneKind, Limbs, Workspace, aba, aba_fused, aba_limbs, crba, kinematics, rnea,
+    AbaBatch, Kinematics, LaneKind, Limbs, Workspace, aba, aba_fused, aba_hybrid, aba_limbs, crba, kinematics, rnea,
+    take_turns,
 };
 use crate::engine::State;
 use crate::math::Vec3;
@@ -133,7 +135,59 @@ fn measure(m: &Arc<Model>, seconds: f64) -> Vec<Row> {
     rows.push(step("step_semi_implicit_euler", m, (Integrator::SemiImplicitEuler, AxisCommand::IDLE), seconds));
     rows.push(step("step_rk4", m, (Integrator::Rk4, AxisCommand::IDLE), seconds));
     rows.push(step("step_servos_hold", m, (Integrator::ImplicitMidpoint, AxisCommand::servo(0.0)), seconds));
+    rows.extend(turns(m, &i, seconds));
     rows
+}
+
+/// Calls of each robot that takes turns.
+const TURNS: usize = 16 * BATCH;
+
+/// Robots in turns, per robot: their hybrid dynamics, and their steps.
+fn turns(m: &Arc<Model>, i: &Inputs, seconds: f64) -> Vec<Row> {
+    let hybrid = || {
+        let (m, states, gravity) = (m.clone(), i.states.clone(), i.gravity);
+        move || {
+            let (mut ws, mut out) = (Workspace::new(&m), vec![0.0; m.nv]);
+            // As a step asks while nothing touches.
+            ws.frugal = true;
+            for s in states.iter().cycle().take(TURNS) {
+                aba_hybrid(&m, &mut ws, (&s.q, &s.v), gravity, black_box(&mut out));
+            }
+        }
+    };
+    let steps = |integrator| {
+        let settings = Settings { integrator, steps_per_interval: 1, ..Settings::default() };
+        let fresh = World::new(m.clone(), settings);
+        move || {
+            let fresh = fresh.clone();
+            move || {
+                for mut world in fresh.iter().cycle().take(TURNS / BATCH).cloned() {
+                    (0..BATCH).for_each(|_| world.advance());
+                }
+            }
+        }
+    };
+    let rows = [
+        in_turns("aba_turns_4", LaneKind::Four, seconds, hybrid),
+        in_turns("aba_turns_8", LaneKind::Eight, seconds, hybrid),
+        in_turns("step_implicit_midpoint_turns_8", LaneKind::Eight, seconds, steps(Integrator::ImplicitMidpoint)),
+        in_turns("step_rk4_turns_8", LaneKind::Eight, seconds, steps(Integrator::Rk4)),
+    ];
+    rows.into_iter().flatten().collect()
+}
+
+/// As many robots as there are lanes, in turns as the worlds of a sweep: all that goes with it, per robot.
+fn in_turns<F: FnOnce() + 'static>(
+    name: &'static str,
+    kind: LaneKind,
+    seconds: f64,
+    task: impl Fn() -> F,
+) -> Option<Row> {
+    let width = kind.is_available().then(|| kind.width())?;
+    Some(sampled(name, seconds, TURNS * width, || {
+        let mut tasks = std::iter::repeat_with(&task).take(width);
+        take_turns((kind, width), wall_seconds, || tasks.next(), |()| {});
+    }))
 }
 
 /// Rows of robots side by side, per robot: name, with copying each state in and each result out, how.
@@ -196,16 +250,19 @@ fn step(name: &'static str, m: &Arc<Model>, (integrator, command): (Integrator, 
 }
 
 fn timed(name: &'static str, seconds: f64, mut call: impl FnMut(usize)) -> Row {
+    sampled(name, seconds, BATCH, || (0..BATCH).for_each(|n| call(n % STATES)))
+}
+
+/// µs per call of batches of so many calls.
+fn sampled(name: &'static str, seconds: f64, calls: usize, mut batch: impl FnMut()) -> Row {
     let mut times = vec![];
     let mut spent = 0.0;
     while spent < seconds || times.len() < 11 {
         let start = cpu_seconds();
-        for n in 0..BATCH {
-            call(n % STATES);
-        }
+        batch();
         let took = cpu_seconds() - start;
         spent += took;
-        times.push(took * 1e6 / BATCH as f64);
+        times.push(took * 1e6 / calls as f64);
     }
     times.sort_by(f64::total_cmp);
     let at = |share: f64| times[((times.len() - 1) as f64 * share).round() as usize];

@@ -24,6 +24,7 @@ pub mod script;
 pub mod simulate;
 mod start;
 mod start_args;
+mod stopwatch;
 pub mod sweep;
 mod texts;
 

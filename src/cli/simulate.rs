@@ -4,6 +4,7 @@ use super::args::SimulateArgs;
 use super::estimate::Estimate;
 use super::outcome::{Outcome, Peak, Progress, counted};
 pub(super) use super::start::{Start, interval};
+use super::stopwatch::Stopwatch;
 use crate::record::{ContactWriter, Format, Recorder, Sample};
 use crate::world::ContactPoint;
 use serde_json::json;
@@ -117,6 +118,7 @@ impl Start {
         let e = self.world.energy();
         let mut outcome = Outcome { finite: true, energy: e.kinetic + e.potential, peaks, ..Outcome::default() };
         let mut sample = Sample::new(&self.world);
+        let watch = Stopwatch::new();
         let mut estimate = self.estimates.then(|| Estimate::new(&self.world, &self.script));
         for interval in 0..=self.intervals {
             let complete = interval == self.intervals;
@@ -137,14 +139,15 @@ impl Start {
             if let Some(estimate) = &mut estimate {
                 estimate.begin(interval, &self.world);
             }
-            let start = super::bench::cpu_seconds();
+            let start = watch.now();
             self.world.advance();
-            outcome.cpu += super::bench::cpu_seconds() - start;
+            outcome.cpu += watch.now() - start;
             if let Some(estimate) = &mut estimate {
                 estimate.end(&self.world);
             }
             outcome.note_peaks(&self.world);
         }
+        outcome.cpu *= watch.share();
         outcome.estimate = estimate.map(|estimate| estimate.told(&self.world));
         Ok(outcome)
     }

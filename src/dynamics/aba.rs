@@ -10,14 +10,16 @@ use super::ball::{Ball, BallIn, eliminate_ball, eliminate_floating};
 use super::crba::Composite;
 use super::damping::{Damped, resist};
 use super::eliminate::{eliminate_axis, eliminate_linear_z, revolute, revolute_root};
+use super::hybrid::mixed;
 use super::joint::{axis_z, bias, carried, joint_transform, joint_velocity, turned, turned_outward, universal_axis};
-use super::limbs::{Limbs, hybrid_limbs};
+use super::limbs::Limbs;
 use super::turn::with_turn;
-use crate::math::{Fma, M3, Real, V3};
+use crate::math::{Flat, M3, Real, V3};
 use crate::model::{Body, JointType, Model};
 
 /// Frame and motion of a body; its velocity gives way to its acceleration in the last pass.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Kin<T> {
     pub r: M3<T>,
     pub w: V3<T>,
@@ -26,6 +28,7 @@ pub(crate) struct Kin<T> {
 
 /// What the elimination of one degree of freedom leaves: `q̈ = x − d·(U·a)`.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub struct Dof<T> {
     pub(crate) ua: V3<T>,
     pub(crate) ul: V3<T>,
@@ -37,8 +40,13 @@ pub struct Dof<T> {
     pub(crate) own: T,
 }
 
+// SAFETY: repr(C), of V3, M3 and T alone.
+unsafe impl<T: Real> Flat<T> for Kin<T> {}
+// SAFETY: the same.
+unsafe impl<T: Real> Flat<T> for Dof<T> {}
+
 /// Scratch of the dynamics of one model. Makes its memory once.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Workspace<T> {
     pub(crate) kin: Vec<Kin<T>>,
     pub(crate) acc: Vec<Acc<T>>,
@@ -49,8 +57,13 @@ pub struct Workspace<T> {
     pub dofs: Vec<DofIn<T>>,
     /// Inputs of the hybrid dynamics, one per spherical joint.
     pub ball_in: Vec<BallIn<T>>,
-    /// Torque that keeps a locked velocity coordinate to its acceleration (filled by [`aba_hybrid`]).
+    /// Torque that keeps a locked velocity coordinate to its acceleration (filled by [`super::aba_hybrid`]).
     pub reaction: Vec<T>,
+    /// The next pass of [`super::aba_hybrid`] need not leave the factor behind that [`super::Response`] takes over: where bodies or robots
+    /// are computed side by side, that is a sixth of the time or more. Accelerations, reactions and mobilities are there in any case.
+    pub frugal: bool,
+    /// It has not.
+    pub(super) bare: bool,
     /// Bodies that the hybrid dynamics damp.
     pub(crate) damped: Vec<Damped<T>>,
     /// Per body, if any is damped: room for [`super::damping_powers`].
@@ -60,8 +73,10 @@ pub struct Workspace<T> {
     pub active: Vec<(usize, usize)>,
     /// Per body: where what it collects comes from.
     sums: Vec<Sum>,
-    /// For [`aba_hybrid`], if limbs are computed side by side.
-    limbs: Option<Box<Limbs>>,
+    /// For [`super::aba_hybrid`], if limbs are computed side by side.
+    pub(super) limbs: Option<Box<Limbs>>,
+    /// Per velocity, of lanes only: 1 in the lanes that are plain, if others are not.
+    pub(super) mixed: Vec<Option<T>>,
 }
 
 impl<T: Real> Workspace<T> {
@@ -78,15 +93,23 @@ impl<T: Real> Workspace<T> {
             dofs: vec![DofIn::free(o); nv],
             ball_in: vec![BallIn::default(); model.balls],
             reaction: vec![o; nv],
+            frugal: false,
+            bare: false,
             damped: Vec::with_capacity(model.dampings.len()),
             wrenches: vec![Spatial::default(); if model.dampings.is_empty() { 0 } else { n }],
             active: vec![(1, n)],
             sums: sums(model),
             limbs: None,
+            mixed: vec![],
         }
     }
 
-    /// From now on [`aba_hybrid`] computes limbs side by side, where all bodies take part and none is damped. The bits stay
+    /// Room for several robots of this model, one in each lane.
+    pub(super) fn of_lanes(model: &Model) -> Self {
+        Self { mixed: vec![None; model.nv], ..Self::new(model) }
+    }
+
+    /// From now on [`super::aba_hybrid`] computes limbs side by side, where all bodies take part and none is damped. The bits stay
     /// the same. False if that does not pay for this model, or cannot be done on this machine.
     pub fn put_side_by_side(&mut self, m: &Model) -> bool {
         self.limbs = Limbs::new(m).filter(Limbs::pays).map(Box::new);
@@ -106,9 +129,8 @@ impl<T: Real> Workspace<T> {
 
     /// Acceleration of the world minus gravity.
     #[inline(always)]
-    pub(crate) fn start(&mut self, gravity: [f64; 3]) {
-        let g = V3::new(T::of(gravity[0]), T::of(gravity[1]), T::of(gravity[2]));
-        self.kin[0] = Kin { r: M3::identity(), w: V3::default(), v: -g };
+    pub(crate) fn start(&mut self, gravity: V3<T>) {
+        self.kin[0] = Kin { r: M3::identity(), w: V3::default(), v: -gravity };
     }
 }
 
@@ -123,64 +145,7 @@ pub fn aba(
     gravity: [f64; 3],
     qdd: &mut [f64],
 ) {
-    kernel::<f64, false>(m, ws, state, tau, gravity, qdd);
-}
-
-/// As [`aba`], with fused multiply-add: about a tenth faster, other last bits. `false` if the machine has no FMA; nothing
-/// is computed then.
-#[must_use]
-pub fn aba_fused(
-    m: &Model,
-    ws: &mut Workspace<Fma>,
-    state: (&[f64], &[f64]),
-    tau: &[f64],
-    gravity: [f64; 3],
-    qdd: &mut [f64],
-) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-        let (q, v) = (fma_slice(state.0), fma_slice(state.1));
-        // SAFETY: the machine has just been asked for both features.
-        unsafe { fused(m, ws, (q, v), fma_slice(tau), gravity, fma_slice_mut(qdd)) };
-        return true;
-    }
-    false
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn fused(m: &Model, ws: &mut Workspace<Fma>, state: (&[Fma], &[Fma]), tau: &[Fma], gravity: [f64; 3], qdd: &mut [Fma]) {
-    kernel::<Fma, false>(m, ws, state, tau, gravity, qdd);
-}
-
-fn fma_slice(x: &[f64]) -> &[Fma] {
-    // SAFETY: Fma is repr(transparent) over f64.
-    unsafe { std::slice::from_raw_parts(x.as_ptr().cast(), x.len()) }
-}
-
-fn fma_slice_mut(x: &mut [f64]) -> &mut [Fma] {
-    // SAFETY: Fma is repr(transparent) over f64, and the borrow is exclusive.
-    unsafe { std::slice::from_raw_parts_mut(x.as_mut_ptr().cast(), x.len()) }
-}
-
-/// Hybrid dynamics: torques, implicit diagonals and locks from `ws.dofs` and `ws.ball_in`; reactions of locked
-/// coordinates to `ws.reaction` and `ws.ball_in`.
-pub fn aba_hybrid(m: &Model, ws: &mut Workspace<f64>, state: (&[f64], &[f64]), gravity: [f64; 3], qdd: &mut [f64]) {
-    if ws.damped.is_empty()
-        && ws.active == [(1, m.bodies.len())]
-        && let Some(mut limbs) = ws.limbs.take()
-    {
-        hybrid_limbs(m, (ws, &mut limbs), state, gravity, qdd);
-        ws.limbs = Some(limbs);
-        return;
-    }
-    hybrid_in_turn(m, ws, state, gravity, qdd);
-}
-
-/// One body after the other. By itself, so that the compiler sees the kernel alone.
-#[inline(never)]
-fn hybrid_in_turn(m: &Model, ws: &mut Workspace<f64>, state: (&[f64], &[f64]), gravity: [f64; 3], qdd: &mut [f64]) {
-    kernel::<f64, true>(m, ws, state, &[], gravity, qdd);
+    kernel::<f64, false>(m, ws, state, tau, V3::from(gravity), qdd);
 }
 
 #[inline(always)]
@@ -189,13 +154,14 @@ pub(super) fn kernel<T: Real, const HYBRID: bool>(
     ws: &mut Workspace<T>,
     (q, v): (&[T], &[T]),
     tau: &[T],
-    gravity: [f64; 3],
+    gravity: V3<T>,
     qdd: &mut [T],
 ) {
+    let bodies = &m.bodies[..];
     ws.kin[0] = Kin { r: M3::identity(), ..Kin::default() };
     for k in 0..ws.active.len() {
         let (from, to) = ws.active[k];
-        for (i, b) in m.bodies.iter().enumerate().take(to).skip(from) {
+        for (i, b) in bodies.iter().enumerate().take(to).skip(from) {
             let kin = moved(b, q, v, &ws.kin[b.parent]);
             if ws.sums[i] == Sum::Several {
                 ws.acc[i] = Acc::rigid(b, kin.w, kin.v);
@@ -206,15 +172,15 @@ pub(super) fn kernel<T: Real, const HYBRID: bool>(
             resist(m, ws, from..to);
         }
         // First what a body has collected, then what it hands on, in place: a copy would be most of a kilobyte in lanes.
-        let mut k = Acc::rigid(&m.bodies[0], ws.kin[0].w, ws.kin[0].v);
+        let mut k = Acc::rigid(&bodies[0], ws.kin[0].w, ws.kin[0].v);
         for i in (from..to).rev() {
-            let b = &m.bodies[i];
+            let b = &bodies[i];
             match ws.sums[i] {
                 Sum::Own => k = Acc::rigid(b, ws.kin[i].w, ws.kin[i].v),
                 Sum::Next => k.add(&Acc::rigid(b, ws.kin[i].w, ws.kin[i].v)),
                 Sum::Several => k = ws.acc[i],
             }
-            inward::<T, HYBRID>(m, ws, (i, &mut k), (q, v), tau);
+            inward::<T, HYBRID>(b, ws, (i, &mut k), (q, v), tau);
             if b.parent != 0 && ws.sums[b.parent] == Sum::Several {
                 ws.acc[b.parent].add(&k);
             }
@@ -223,8 +189,8 @@ pub(super) fn kernel<T: Real, const HYBRID: bool>(
     ws.start(gravity);
     for k in 0..ws.active.len() {
         let (from, to) = ws.active[k];
-        for i in from..to {
-            outward::<T, HYBRID>(m, ws, i, (q, v), qdd);
+        for (i, b) in bodies.iter().enumerate().take(to).skip(from) {
+            outward::<T, HYBRID>(b, ws, i, (q, v), qdd);
         }
     }
 }
@@ -254,13 +220,12 @@ pub(super) fn moved<T: Real>(b: &Body, q: &[T], v: &[T], parent: &Kin<T>) -> Kin
 /// the world.
 #[inline(always)]
 pub(super) fn inward<T: Real, const HYBRID: bool>(
-    m: &Model,
+    b: &Body,
     ws: &mut Workspace<T>,
     (i, k): (usize, &mut Acc<T>),
     (q, v): (&[T], &[T]),
     tau: &[T],
 ) {
-    let b = &m.bodies[i];
     let kin = ws.kin[i];
     if b.joint == JointType::Floating {
         let t = |n: usize| if HYBRID { ws.dofs[b.v + n].tau } else { tau[b.v + n] };
@@ -279,6 +244,13 @@ pub(super) fn inward<T: Real, const HYBRID: bool>(
             let (p, own, out) = (V3::of(b.tree_p), (kin.w, kin.v), (&mut ws.dof[b.v], t));
             *k = with_turn!(b.along, &kin.r, r => revolute(k, (r, p), own, v[b.v], out));
         }
+        return;
+    }
+    if T::SEVERAL
+        && b.joint == JointType::Revolute
+        && let Some(Some(mask)) = ws.mixed.get(b.v).copied()
+    {
+        mixed(b, ws, (i, k), v, mask);
         return;
     }
     let c = bias(b, q, v, (kin.w, kin.v));
@@ -317,13 +289,12 @@ fn hand_over_floating<T: Real>(b: &Body, kin: &Kin<T>, own: [T; 6], q: &[T]) -> 
 /// Third pass, one body: accelerations, from the world outwards.
 #[inline(always)]
 pub(super) fn outward<T: Real, const HYBRID: bool>(
-    m: &Model,
+    b: &Body,
     ws: &mut Workspace<T>,
     i: usize,
     (q, v): (&[T], &[T]),
     qdd: &mut [T],
 ) {
-    let b = &m.bodies[i];
     let kin = ws.kin[i];
     let parent = ws.kin[b.parent];
     if b.joint == JointType::Revolute {

@@ -1,10 +1,11 @@
 //! Articulated-body inertias: their sums, shifts and rotations.
 
-use crate::math::{M3, Real, S3, V3};
+use crate::math::{Flat, M3, Real, S3, V3};
 use crate::model::{Body, JointType, Model};
 
 /// Articulated inertia `[J H; Hᵀ M]` about the body's origin: (torque, force) per (angular, linear) acceleration.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Art<T> {
     pub j: S3<T>,
     pub h: M3<T>,
@@ -13,6 +14,7 @@ pub(crate) struct Art<T> {
 
 /// What a body collects from its children: articulated inertia and bias force.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Acc<T> {
     pub ia: Art<T>,
     pub n: V3<T>,
@@ -21,10 +23,14 @@ pub(crate) struct Acc<T> {
 
 /// Spatial vector, angular first.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Spatial<T> {
     pub a: V3<T>,
     pub l: V3<T>,
 }
+
+// SAFETY: repr(C), of V3, M3 and S3 alone.
+unsafe impl<T: Real> Flat<T> for Acc<T> {}
 
 impl<T: Real> Acc<T> {
     #[inline(always)]

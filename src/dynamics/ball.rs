@@ -2,7 +2,7 @@
 
 use super::aba::Dof;
 use super::articulated::{Acc, Spatial};
-use crate::math::{M3, Real, S3, V3};
+use crate::math::{Flat, M3, Real, S3, V3};
 
 /// A prescribed rate of change along one direction of a spherical joint: `gradient·ω̇ = acceleration`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,6 +30,7 @@ pub struct BallIn<T> {
 
 /// What the elimination of a spherical joint leaves: `ω̇ = x − P Uᵀ a`.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Ball<T> {
     ua: S3<T>,
     ul: M3<T>,
@@ -43,6 +44,9 @@ pub(crate) struct Ball<T> {
     /// Torque that is left over for locks and acceleration, `τ − n − Uᵀ a`; written by the hybrid dynamics.
     load: V3<T>,
 }
+
+// SAFETY: repr(C), of V3, M3 and S3 alone.
+unsafe impl<T: Real> Flat<T> for Ball<T> {}
 
 impl<T: Real> Ball<T> {
     /// `ω̇`, given the acceleration of the frame it moves against.

@@ -5,7 +5,7 @@
 
 use super::Workspace;
 use super::aba::kernel;
-use crate::math::{Lane, Lanes4};
+use crate::math::{Lane, Lanes4, V3};
 #[cfg(target_arch = "x86_64")]
 use crate::math::{X4, X8};
 use crate::model::Model;
@@ -232,7 +232,7 @@ impl<T: Lane> Pack<T> {
         let states = self.q.chunks_exact(nq).zip(self.v.chunks_exact(nv));
         let loads = self.tau.chunks_exact(nv).zip(self.qdd.chunks_exact_mut(nv));
         for (state, (tau, qdd)) in states.zip(loads) {
-            kernel::<T, false>(m, &mut self.ws, state, tau, gravity, qdd);
+            kernel::<T, false>(m, &mut self.ws, state, tau, V3::of(V3::from(gravity)), qdd);
         }
     }
 }

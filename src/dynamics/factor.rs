@@ -25,6 +25,7 @@ pub(super) struct FloatingRoot {
 
 impl FloatingRoot {
     /// Of a body's articulated inertia after the inward pass.
+    #[inline]
     pub fn of(ws: &Workspace<f64>, body: usize) -> Self {
         let ia = &ws.acc[body].ia;
         let h = ia.h;
@@ -42,6 +43,7 @@ impl FloatingRoot {
     }
 
     /// `W u`.
+    #[inline]
     pub fn response(&self, u: Spatial<f64>) -> Spatial<f64> {
         Spatial { a: self.angular.mv(u.a - self.lever.mv(u.l)), l: self.linear.mv(u.l) }
     }

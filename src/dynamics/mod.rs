@@ -15,6 +15,7 @@ mod damping;
 mod eliminate;
 mod energy;
 mod factor;
+mod hybrid;
 mod impulses;
 mod integrate;
 mod joint;
@@ -24,10 +25,12 @@ mod layout;
 mod limbs;
 mod response;
 mod rnea;
+mod scalars;
+mod together;
 mod turn;
 mod velocities;
 
-pub use aba::{Dof, Workspace, aba, aba_fused, aba_hybrid};
+pub use aba::{Dof, Workspace, aba};
 pub use ball::{BallIn, BallLock};
 pub use batch::{AbaBatch, LaneKind};
 pub use check::singular_axes;
@@ -35,6 +38,7 @@ pub use columns::Columns;
 pub use crba::crba;
 pub use damping::{Scheme, damping_power, damping_powers, write_damping};
 pub use energy::{Energy, Momentum, body_energy, body_momentum, energy, momentum, momentum_of};
+pub use hybrid::aba_hybrid;
 pub use integrate::{coordinate_rates, exponential_step, move_coordinates, normalize, turn};
 pub use joint::joint_transform;
 pub(crate) use joint::universal_axis;
@@ -44,6 +48,8 @@ pub use layout::{CHUNK, Layout};
 pub use limbs::{Limbs, aba_limbs};
 pub use response::{Mobility, Push, Response};
 pub use rnea::rnea;
+pub use scalars::{aba_fused, aba_twofold};
+pub use together::{Asked, Turn, own_turn, take_turns};
 pub use velocities::velocities_of;
 
 /// Inputs of one velocity coordinate to the hybrid dynamics: a free one gets a torque, a locked one an acceleration.

@@ -78,8 +78,13 @@ impl Response {
         }
     }
 
-    /// Takes the factor over from the last [`aba_hybrid`](super::aba_hybrid) in `ws`. Before the first row after it.
+    /// Takes the factor over from the last [`aba_hybrid`](super::aba_hybrid) in `ws`. Before the first row after it. If that has left none
+    /// ([`Workspace::frugal`]), responses are not numbers.
     pub fn refresh(&mut self, m: &Model, ws: &Workspace<f64>) {
+        if ws.bare {
+            self.scale.fill(f64::NAN);
+            return;
+        }
         for (i, b) in m.bodies.iter().enumerate().skip(1) {
             match b.joint {
                 JointType::Revolute | JointType::Prismatic => self.scale[b.v] = ws.dof[b.v].d.sqrt(),

@@ -28,7 +28,7 @@ fn kernel<T: Real>(
     tau: &mut [T],
 ) {
     velocities(m, ws, q, v);
-    ws.start(gravity);
+    ws.start(V3::of(V3::from(gravity)));
     for i in 1..m.bodies.len() {
         outward(m, ws, i, (q, v), qdd);
     }

@@ -50,7 +50,7 @@ impl<'a> Cut<'a> {
     /// The model afterwards and its state; `k` belongs to the state before.
     pub fn made(&self, s: &State, k: &Kinematics) -> (Model, State) {
         let mut left = Model { nq: 0, nv: 0, balls: 0, ..self.m.clone() };
-        left.bodies = self.bodies(&mut left);
+        left.bodies = self.bodies(&mut left).into();
         let state = self.state(&left, s, k);
         left.eulers = self.m.eulers.iter().filter_map(|e| self.euler(&left, e)).collect();
         left.softs = self.m.softs.iter().filter_map(|soft| self.soft(&left, soft)).collect();

@@ -188,6 +188,7 @@ impl Rbx {
             qdd.fill(0.0);
         }
         self.axes.write_smooth(m, &mut self.ws, self.state.as_ref());
+        self.ws.frugal = !first && !self.axes.is_coupled();
         aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), p.gravity, qdd);
         let fits = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), CouplingStage { h: p.h, first }, qdd);
         coordinate_rates(m, &self.state.q, &self.state.v, coordinates);

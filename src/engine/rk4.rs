@@ -33,6 +33,7 @@ impl Rbx {
                 self.state.read_angles(m);
             }
             self.axes.write_smooth(m, &mut self.ws, self.state.as_ref());
+            self.ws.frugal = stage > 0 && !self.axes.is_coupled();
             aba_hybrid(m, &mut self.ws, (&self.state.q, &self.state.v), s.gravity, &mut self.qdd);
             let at = CouplingStage { h: s.h, first: stage == 0 };
             let coupled = self.axes.couple_smooth(m, &mut self.ws, self.state.as_ref(), at, &mut self.qdd);

@@ -35,6 +35,17 @@ pub unsafe trait Lane: Real {
         // SAFETY: an implementor is that many numbers in a row, and the borrow is exclusive.
         unsafe { std::slice::from_raw_parts_mut(std::ptr::from_mut(self).cast(), Self::COUNT) }
     }
+
+    /// Of as many as there are lanes: number k of value i becomes number i of value k.
+    #[inline(always)]
+    fn transpose(block: &mut [Self]) {
+        for i in 1..Self::COUNT {
+            for k in 0..i {
+                let (a, b) = (block[i].numbers()[k], block[k].numbers()[i]);
+                (block[i].numbers_mut()[k], block[k].numbers_mut()[i]) = (b, a);
+            }
+        }
+    }
 }
 
 /// Four lanes without vector instructions of a certain machine: for those that have none of the others.
@@ -94,6 +105,11 @@ impl SubAssign for Lanes4 {
 }
 
 impl Real for Lanes4 {
+    const SEVERAL: bool = true;
+    #[inline(always)]
+    fn blend(self, other: Self, mask: Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k].blend(other.0[k], mask.0[k])))
+    }
     #[inline(always)]
     fn of(x: f64) -> Self {
         Self([x; 4])
@@ -142,6 +158,34 @@ mod tests {
                 for (a, b) in own.iter().zip(scalar) {
                     assert!(a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(), "{x}: {a} {b}");
                 }
+            }
+        }
+    }
+
+    fn turned<T: Lane>() {
+        let mut block = vec![T::of(0.0); T::COUNT];
+        let numbers = block.iter_mut().flat_map(Lane::numbers_mut);
+        numbers.enumerate().for_each(|(n, x)| *x = n as f64);
+        T::transpose(&mut block);
+        for (k, x) in block.iter().enumerate() {
+            let column: Vec<f64> = (0..T::COUNT).map(|i| (i * T::COUNT + k) as f64).collect();
+            assert_eq!(x.numbers(), column);
+            let (mask, other) = (T::read(&column), T::of(-1.0));
+            let chosen: Vec<f64> = column.iter().map(|x| if *x == 0.0 { -1.0 } else { *x }).collect();
+            assert_eq!(x.blend(other, mask).numbers(), chosen);
+        }
+    }
+
+    #[test]
+    fn blocks_are_transposed_and_lanes_chosen() {
+        turned::<Lanes4>();
+        #[cfg(target_arch = "x86_64")]
+        {
+            if crate::math::X4::<false>::is_available() {
+                turned::<crate::math::X4<false>>();
+            }
+            if crate::math::X8::<false>::is_available() {
+                turned::<crate::math::X8<false>>();
             }
         }
     }

@@ -1,18 +1,22 @@
 //! Aliases over nalgebra's f64 types, frames, and the kernel's own small types.
 
+mod flat;
 pub mod frames;
 mod lanes;
 mod real;
 mod sincos;
 mod small;
+mod twofold;
 mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub use flat::Flat;
 pub use lanes::{Lane, Lanes4};
 pub use real::{Fma, Real};
 pub use sincos::sin_cos;
 pub use small::{M3, S3, V3};
+pub use twofold::Twofold;
 pub(crate) use wide::wide;
 #[cfg(target_arch = "x86_64")]
 pub use x86::{X4, X8};

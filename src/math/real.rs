@@ -22,6 +22,10 @@ pub trait Real:
     fn mad(self, b: Self, c: Self) -> Self;
     /// Sine and cosine, the same bits on every machine.
     fn sin_cos(self) -> (Self, Self);
+    /// Is it of several lanes?
+    const SEVERAL: bool = false;
+    /// `self` in the lanes where `mask` is not 0, `other` in the others.
+    fn blend(self, other: Self, mask: Self) -> Self;
 }
 
 impl Real for f64 {
@@ -36,6 +40,10 @@ impl Real for f64 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         super::sin_cos(self)
+    }
+    #[inline(always)]
+    fn blend(self, other: Self, mask: Self) -> Self {
+        if mask == 0.0 { other } else { self }
     }
 }
 
@@ -94,5 +102,9 @@ impl Real for Fma {
     fn sin_cos(self) -> (Self, Self) {
         let (s, c) = super::sin_cos(self.0);
         (Self(s), Self(c))
+    }
+    #[inline(always)]
+    fn blend(self, other: Self, mask: Self) -> Self {
+        if mask.0 == 0.0 { other } else { self }
     }
 }

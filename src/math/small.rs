@@ -5,6 +5,7 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 /// 3-vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct V3<T> {
     /// First.
     pub x: T,
@@ -16,6 +17,7 @@ pub struct V3<T> {
 
 /// 3×3 matrix, `r` its rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct M3<T> {
     /// Rows.
     pub r: [V3<T>; 3],
@@ -24,6 +26,7 @@ pub struct M3<T> {
 /// Symmetric 3×3 matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
+#[repr(C)]
 pub struct S3<T> {
     pub xx: T,
     pub xy: T,

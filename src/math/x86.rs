@@ -61,6 +61,12 @@ macro_rules! lanes {
         // SAFETY: repr(transparent) over a register of that many numbers.
         unsafe impl<const FUSED: bool> Lane for $type<FUSED> {
             const COUNT: usize = $count;
+            #[inline(always)]
+            fn transpose(block: &mut [Self]) {
+                if let Ok(block) = block.try_into() {
+                    Self::turn(block);
+                }
+            }
         }
         operator!($type, Add, add, $add);
         operator!($type, Sub, sub, $sub);
@@ -85,6 +91,11 @@ macro_rules! lanes {
             }
         }
         impl<const FUSED: bool> Real for $type<FUSED> {
+            const SEVERAL: bool = true;
+            #[inline(always)]
+            fn blend(self, other: Self, mask: Self) -> Self {
+                self.choose(other, mask)
+            }
             #[inline(always)]
             fn of(x: f64) -> Self {
                 // SAFETY: only called where `is_available` has said yes.
@@ -137,6 +148,31 @@ impl<const FUSED: bool> Neg for X8<FUSED> {
 }
 
 impl<const FUSED: bool> X4<FUSED> {
+    /// See [`Lane::transpose`].
+    #[inline(always)]
+    fn turn(block: &mut [Self; 4]) {
+        let [Self(a), Self(b), Self(c), Self(d)] = *block;
+        // SAFETY: values of this type exist, so the machine has AVX.
+        unsafe {
+            let (ab, cd) = (_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d));
+            block[0].0 = _mm256_permute2f128_pd::<0x20>(ab, cd);
+            block[2].0 = _mm256_permute2f128_pd::<0x31>(ab, cd);
+            let (ab, cd) = (_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d));
+            block[1].0 = _mm256_permute2f128_pd::<0x20>(ab, cd);
+            block[3].0 = _mm256_permute2f128_pd::<0x31>(ab, cd);
+        }
+    }
+
+    /// See [`Real::blend`].
+    #[inline(always)]
+    fn choose(self, other: Self, mask: Self) -> Self {
+        // SAFETY: a value of this type exists, so the machine has AVX.
+        unsafe {
+            let chosen = _mm256_cmp_pd::<_CMP_NEQ_UQ>(mask.0, _mm256_setzero_pd());
+            Self(_mm256_blendv_pd(other.0, self.0, chosen))
+        }
+    }
+
     /// Is a lane beyond what is reduced together, or not a number?
     #[inline(always)]
     fn is_far(self) -> bool {
@@ -164,6 +200,39 @@ impl<const FUSED: bool> X4<FUSED> {
 }
 
 impl<const FUSED: bool> X8<FUSED> {
+    /// See [`Lane::transpose`].
+    #[inline(always)]
+    fn turn(block: &mut [Self; 8]) {
+        let [Self(a), Self(b), Self(c), Self(d), Self(e), Self(f), Self(g), Self(h)] = *block;
+        // SAFETY: values of this type exist, so the machine has AVX-512F.
+        unsafe {
+            let even = [
+                _mm512_unpacklo_pd(a, b),
+                _mm512_unpacklo_pd(c, d),
+                _mm512_unpacklo_pd(e, f),
+                _mm512_unpacklo_pd(g, h),
+            ];
+            [block[0].0, block[2].0, block[4].0, block[6].0] = quarters(even);
+            let odd = [
+                _mm512_unpackhi_pd(a, b),
+                _mm512_unpackhi_pd(c, d),
+                _mm512_unpackhi_pd(e, f),
+                _mm512_unpackhi_pd(g, h),
+            ];
+            [block[1].0, block[3].0, block[5].0, block[7].0] = quarters(odd);
+        }
+    }
+
+    /// See [`Real::blend`].
+    #[inline(always)]
+    fn choose(self, other: Self, mask: Self) -> Self {
+        // SAFETY: a value of this type exists, so the machine has AVX-512F.
+        unsafe {
+            let chosen = _mm512_cmp_pd_mask::<_CMP_NEQ_UQ>(mask.0, _mm512_setzero_pd());
+            Self(_mm512_mask_blend_pd(chosen, other.0, self.0))
+        }
+    }
+
     /// As [`X4::is_far`].
     #[inline(always)]
     fn is_far(self) -> bool {
@@ -183,6 +252,25 @@ impl<const FUSED: bool> X8<FUSED> {
             let next = _mm512_add_epi64(turns, _mm512_set1_epi64(1));
             (Self(signed8(sine, turns)), Self(signed8(cosine, next)))
         }
+    }
+}
+
+/// Of four values of four pairs each: the first pairs, the second ones …
+///
+/// # Safety
+/// Needs AVX-512F.
+#[inline(always)]
+unsafe fn quarters([a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
+    // SAFETY: the caller has the feature.
+    unsafe {
+        let (ab, cd) = (_mm512_shuffle_f64x2::<0x88>(a, b), _mm512_shuffle_f64x2::<0x88>(c, d));
+        let (ef, gh) = (_mm512_shuffle_f64x2::<0xdd>(a, b), _mm512_shuffle_f64x2::<0xdd>(c, d));
+        [
+            _mm512_shuffle_f64x2::<0x88>(ab, cd),
+            _mm512_shuffle_f64x2::<0x88>(ef, gh),
+            _mm512_shuffle_f64x2::<0xdd>(ab, cd),
+            _mm512_shuffle_f64x2::<0xdd>(ef, gh),
+        ]
     }
 }
 

@@ -6,7 +6,9 @@ mod soften;
 use super::chain::chains;
 use super::membership::memberships;
 use super::rig::rigs;
-use super::{AxisSlot, Body, Deactivation, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model, Softness};
+use super::{
+    AxisSlot, Bodies, Body, Deactivation, Effects, EulerFrame, JointType, LinkFrame, LinkInfo, Model, Softness,
+};
 use crate::description::{Description, GroupKind, Joint, JointKind, Link};
 use crate::mass::MassProperties;
 use crate::math::{M3, Mat3, Pose, Quat, S3, V3, Vec3};
@@ -65,7 +67,7 @@ impl<'a> Builder<'a> {
             name: d.name.clone(),
             axes: vec![],
             links: vec![],
-            bodies: vec![],
+            bodies: Bodies::default(),
             eulers: vec![],
             base,
             base_pose: Pose::identity(),

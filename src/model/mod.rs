@@ -3,6 +3,7 @@
 //! invariant: `bodies[0]` is the world; for every other body `parent < index`, so a loop upwards visits parents first.
 //! invariant: every body's joint frame has its (last) axis along z; the frame of a body is its joint frame.
 
+mod bodies;
 mod build;
 mod chain;
 mod collider;
@@ -17,6 +18,7 @@ mod joint_set;
 mod membership;
 mod rig;
 
+pub use bodies::Bodies;
 pub use build::Base;
 pub use chain::LinkChain;
 pub use collider::{Collider, Surface};
@@ -226,7 +228,7 @@ pub enum Along {
 }
 
 /// A rigid body with the joint that carries it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// Index of the parent body.
     pub parent: usize,
@@ -281,7 +283,7 @@ pub struct Model {
     /// Links in the order of the URDF.
     pub links: Vec<LinkInfo>,
     /// Bodies; the first is the world.
-    pub bodies: Vec<Body>,
+    pub bodies: Bodies,
     /// 3DOF groups.
     pub eulers: Vec<EulerFrame>,
     /// How the root is held.

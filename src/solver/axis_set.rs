@@ -63,6 +63,8 @@ pub struct AxisSet {
     pub(super) between: Vec<Between>,
     /// Is there an axis that is put back into its range after the step?
     pub(super) pushes: bool,
+    /// Is there a servo, which will be told its mobility?
+    servos: bool,
     /// Per axis: 2 j on segment j, 2 k + 1 on riser k.
     pub(super) place: Vec<usize>,
     /// Per axis: it moves with its speed at the end of the step.
@@ -121,6 +123,7 @@ impl AxisSet {
             effects: Effects::NONE,
             between: Between::all(model),
             pushes: false,
+            servos: false,
             place: vec![0; n],
             at_end: vec![true; n],
             stiff: vec![false; n],
@@ -171,7 +174,7 @@ impl AxisSet {
             self.laws.iter_mut().for_each(|law| law.plain = false);
             self.effects = effects;
         }
-        self.pushes = false;
+        (self.pushes, self.servos) = (false, false);
         for (i, axis) in m.axes.iter().enumerate() {
             if self.rests(i) {
                 self.between[i].on = false;
@@ -208,6 +211,7 @@ impl AxisSet {
             self.laws[i].clear()
         }
         self.pushes |= self.laws[i].push != 0.0;
+        self.servos |= self.laws[i].is_servo();
         self.place[i] = self.laws[i].guess(v, self.memory[i]);
         self.at_end[i] = !start.mean || self.stiff[i] || self.place[i] % 2 == 1 || self.laws[i].in_soft_stop;
     }
@@ -240,6 +244,7 @@ impl AxisSet {
     ) -> usize {
         self.take_rates(m, at, v0);
         self.write_inputs(m, ws, h);
+        ws.frugal = !self.servos && self.couplings.as_ref().is_none_or(|c| c.idle());
         aba_hybrid(m, ws, (at.q, at.v), gravity, qdd);
         if let Some(driven) = &mut self.driven {
             driven.note(ws, qdd);

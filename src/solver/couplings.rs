@@ -262,6 +262,11 @@ impl AxisSet {
         loose
     }
 
+    /// Are there axes that follow others?
+    pub fn is_coupled(&self) -> bool {
+        self.couplings.as_ref().is_some_and(|c| !c.pairs.is_empty())
+    }
+
     /// As `AxisSet::couple` in a stage of an explicit step: brings the accelerations together. False if the step is better
     /// made otherwise.
     ///

@@ -38,6 +38,7 @@ pub(super) enum DriveLaw {
 
 impl DriveLaw {
     /// The law that the command of an axis asks for, in a step of `h` seconds, without the parts that are `off`.
+    #[inline]
     pub fn of(input: &AxisInput, h: f64, off: Parts) -> Self {
         let (limits, c) = (input.limits, &input.command);
         let given = |command: f64, own: f64| if command.is_nan() { own } else { command.abs().min(own) };
@@ -80,6 +81,7 @@ impl DriveLaw {
     }
 
     /// The curve as its first segment and its knots.
+    #[inline]
     pub fn staircase(&self) -> (Segment, [Option<Knot>; 2]) {
         let kink = |speed: f64, steeper: f64| Some(Knot { speed, drop: 0.0, steeper, kinds: 0 });
         match *self {

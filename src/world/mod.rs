@@ -9,6 +9,7 @@ mod order;
 mod pose;
 mod rebuild;
 mod settings;
+mod share;
 mod snapshot;
 mod warnings;
 

@@ -11,7 +11,7 @@ import numpy
 import pytest
 import yaml
 from conftest import ARM, BINARY, wait_until
-from simulation import columns, simulate
+from simulation import ORIGIN, columns, simulate
 
 TIMES = {"cpu_seconds", "us_per_step", "real_time_factor"}
 
@@ -90,6 +90,25 @@ def test_threads_make_no_difference(table, tmp_path, jobs):
     sweep(spec_file(tmp_path), "--out", tmp_path / "rows.csv", "--jobs", jobs)
     assert results(tmp_path / "rows.csv") == results(table)
     assert list(results(tmp_path / "rows.csv")) == list(range(10)), "in the order of worlds"
+
+
+def test_worlds_alone_have_the_same_rows(tmp_path):
+    scene = {"version": 1, "ground": True, "robot": {"urdf": str(ORIGIN), "base": "free", "pose": [0, 0, 1.0, 0, 0, 0, 1]}}
+    vary = [
+        {"at": "run.integrator", "values": ["implicit_midpoint", "semi_implicit_euler", "rk4", "extrapolation"]},
+        {"at": "run.gravity.2", "uniform": [-12, -3]},
+        {"at": "run.effort.left_knee", "uniform": [-20, 20]},
+    ]
+    run = {"duration": 0.1, "gravity": [0, 0, -9.8], "effort": {"left_knee": 0, "right_knee": 3}, "servo": {"left_elbow": 0.4}}
+    spec = spec_file(tmp_path, scene=scene, run=run, vary=vary, repeat=3)
+    found = {}
+    for name, *options in [("alone", "--alone", "--jobs", 2), ("one", "--jobs", 1), ("two", "--jobs", 2)]:
+        sweep(spec, "--out", tmp_path / f"{name}.csv", "--tables", tmp_path / name, *options)
+        tables = [(tmp_path / name / f"world_{i:02}.csv").read_text() for i in range(12)]
+        found[name] = results(tmp_path / f"{name}.csv"), tables
+        assert all(float(row["cpu_seconds"]) > 0 for row in rows(tmp_path / f"{name}.csv")), name
+    assert found["one"] == found["alone"] and found["two"] == found["alone"]
+    assert len(set(found["alone"][1])) == 12, "worlds that differ"
 
 
 def test_shards_make_no_difference_and_are_merged(table, tmp_path):

@@ -5,7 +5,7 @@ pub mod urdf;
 
 use realnoid::math::{M3, Mat3, Quat, S3, V3, Vec3};
 use realnoid::model::{
-    Axis, AxisKind, AxisSlot, Base, Body, DriveLimits, Effects, JointType, LinkFrame, LinkInfo, Model, Softness,
+    Axis, AxisKind, AxisSlot, Base, Bodies, Body, DriveLimits, Effects, JointType, LinkFrame, LinkInfo, Model, Softness,
 };
 
 /// A small generator with the same numbers everywhere (SplitMix64).
@@ -44,7 +44,7 @@ pub fn tree(joints: &[JointType], chain: bool, seed: u64) -> Model {
         name: "random".into(),
         axes: vec![],
         links: vec![],
-        bodies: vec![],
+        bodies: Bodies::default(),
         eulers: vec![],
         base: Base::Fixed,
         base_pose: realnoid::math::Pose::identity(),

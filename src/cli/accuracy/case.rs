@@ -45,6 +45,11 @@ pub enum Truth {
         /// The values.
         value: Closed,
     },
+    /// Computed in numbers of twice the digits, where nothing but gravity acts; half as many steps tell the error.
+    Exact {
+        /// In a [`GRID`].
+        steps: u32,
+    },
     /// A run of rbx with fine steps; one with half as many tells its own error.
     Own {
         /// Of both runs.

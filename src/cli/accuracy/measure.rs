@@ -1,6 +1,7 @@
 //! Runs a case at a point of a ladder: how far it is from what is right, and what it costs.
 
-use super::case::{Case, GRID_NS, Sample, Seat, Truth, sample};
+use super::case::{Case, GRID, GRID_NS, Sample, Seat, Truth, sample};
+use super::exact::Exact;
 use super::fit::{Fit, diverges, fit};
 use super::rung::{Ladder, Point, Rung, Wish};
 use crate::cli::bench::cpu_seconds;
@@ -134,21 +135,41 @@ fn curve(rung: &Rung, runs: Vec<Run>) -> Curve {
 
 /// What is right.
 fn reference(case: &Case, world: &World, seats: &[Seat], care: Care) -> Result<Reference, String> {
-    let (integrator, steps) = match &case.truth {
+    let (values, half, words) = match &case.truth {
         Truth::Closed { words, value } => {
             let values = value(&case.times());
             return Ok(Reference { values, words: format!("closed form: {words}"), own: 0.0 });
         }
+        Truth::Exact { steps } => {
+            let fine = |steps| exact(case, world, seats, steps);
+            let (order, h) = (Exact::ORDER, GRID / f64::from(*steps));
+            let words = format!("in twice the digits of f64; Gragg, Bulirsch, Stoer of order {order}, steps of {h} s");
+            (fine(*steps)?, fine(steps / 2)?, words)
+        }
         Truth::Own { integrator, steps_per_ms } => {
-            (*integrator, if care.quick { steps_per_ms / QUICK } else { *steps_per_ms })
+            let steps = if care.quick { steps_per_ms / QUICK } else { *steps_per_ms };
+            let name = integrator.name();
+            let fine = |steps| own(case, world, seats, (*integrator, steps));
+            let words = format!("rbx, {name}, steps of {:.4e} s: {steps} in a millisecond", 1e-3 / f64::from(steps));
+            (fine(steps)?, fine(steps / 2)?, words)
         }
     };
-    let fine = |steps| own(case, world, seats, (integrator, steps));
-    let (values, half) = (fine(steps)?, fine(steps / 2)?);
     let errors = errors(case, &values, &half);
-    let words =
-        format!("rbx, {}, steps of {:.4e} s: {steps} in a millisecond", integrator.name(), 1e-3 / f64::from(steps));
     Ok(Reference { values, words, own: rms(&errors) })
+}
+
+fn exact(case: &Case, world: &World, seats: &[Seat], steps: u32) -> Result<Vec<Sample>, String> {
+    let (mut state, mut world, mut snapshot) = (world.state().clone(), world.clone(), world.new_snapshot());
+    let model = world.model().clone();
+    let mut exact = Exact::new(&model, world.settings().gravity)?;
+    let course = exact.run((&state.q, &state.v), (case.instants, GRID, steps));
+    let one = |(q, v)| {
+        (state.q, state.v) = (q, v);
+        world.set_initial_state(state.clone());
+        world.write_snapshot(&mut snapshot);
+        sample(&snapshot, seats)
+    };
+    Ok(course.into_iter().map(one).collect())
 }
 
 fn own(case: &Case, world: &World, seats: &[Seat], how: (Integrator, u32)) -> Result<Vec<Sample>, String> {

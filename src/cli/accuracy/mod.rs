@@ -5,6 +5,7 @@ mod args;
 mod case;
 mod cases;
 mod closed;
+mod exact;
 mod fit;
 mod measure;
 mod mjcf;
@@ -87,6 +88,7 @@ fn list(cases: &[Case]) -> String {
     let one = |c: &Case| {
         let reference = match &c.truth {
             Truth::Closed { words, .. } => format!("closed form: {words}"),
+            Truth::Exact { steps } => format!("twice the digits of f64, {steps} steps in {GRID} s"),
             Truth::Own { integrator, steps_per_ms } => {
                 format!("our own run, {}, {steps_per_ms} steps in a millisecond", integrator.name())
             }

@@ -11,6 +11,7 @@ mod work;
 
 use super::args::SweepArgs;
 use super::simulate::{catch_signals, stopped};
+use crate::dynamics::LaneKind;
 use document::Document;
 use spec::Spec;
 use std::path::{Path, PathBuf};
@@ -60,7 +61,8 @@ fn sweep(args: &SweepArgs) -> Result<String, (u8, String)> {
     }
     catch_signals();
     let places = Places { bags: args.bags.clone(), tables: args.tables.clone() };
-    let work = Work { document: &document, worlds: &worlds, plan: &plan, places, jobs: jobs(args) };
+    let (jobs, together) = at_once(args, left.len());
+    let work = Work { document: &document, worlds: &worlds, plan: &plan, places, jobs, together };
     let tally = work.run(&left, &mut table).map_err(|reason| (1, reason))?;
     if !stopped() {
         table.sort().map_err(|reason| (1, reason))?;
@@ -68,9 +70,12 @@ fn sweep(args: &SweepArgs) -> Result<String, (u8, String)> {
     Ok(told(&tally, (before, todo.len(), worlds.len()), &path))
 }
 
-fn jobs(args: &SweepArgs) -> usize {
+/// Threads for so many worlds, and worlds of each that are stepped together: a lane each, but not while other threads idle.
+fn at_once(args: &SweepArgs, worlds: usize) -> (usize, usize) {
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    args.jobs.map_or_else(cores, |jobs| jobs as usize)
+    let jobs = args.jobs.map_or_else(cores, |jobs| jobs as usize);
+    let lanes = if args.alone { 1 } else { LaneKind::best().width() };
+    (jobs, lanes.min(worlds.div_ceil(jobs)))
 }
 
 fn told(tally: &Tally, (before, here, all): (usize, usize, usize), path: &Path) -> String {

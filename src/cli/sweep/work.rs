@@ -6,6 +6,10 @@ use super::spec::WorldPoint;
 use super::table::Table;
 use crate::cli::outcome::Progress;
 use crate::cli::simulate::{Files, stopped};
+use crate::cli::start::Start;
+use crate::cli::stopwatch::wall_seconds;
+use crate::dynamics::{LaneKind, take_turns};
+use crate::model::Bodies;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -28,6 +32,8 @@ pub struct Work<'a> {
     pub places: Places,
     /// Threads.
     pub jobs: usize,
+    /// Worlds of a thread that are stepped together.
+    pub together: usize,
 }
 
 /// Folders of files that each world has for itself.
@@ -87,31 +93,41 @@ impl Work<'_> {
         Ok(tally)
     }
 
+    /// Several worlds in turns: they share passes of the dynamics.
     fn worker(&self, left: &[usize], (next, failed): (&AtomicUsize, &AtomicBool), rows: &Sender<Finished>) {
-        while !failed.load(Ordering::Relaxed) && !stopped() {
-            let Some(world) = left.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
-            let world = &self.worlds[*world];
-            let finished = match self.simulate(world) {
+        let tell = |(world, outcome): (usize, Outcome)| {
+            let world = &self.worlds[world];
+            let finished = match outcome {
                 Ok(None) => return,
                 Ok(Some(end)) => (self.plan.row(world, &end), Ok(state(&end))),
                 Err(reason) => (vec![], Err(reason)),
             };
             if rows.send(finished).is_err() {
-                return;
+                failed.store(true, Ordering::Relaxed);
             }
-        }
+        };
+        let mut bodies = Bodies::default();
+        let next = || {
+            while !failed.load(Ordering::Relaxed) && !stopped() {
+                let world = *left.get(next.fetch_add(1, Ordering::Relaxed))?;
+                match self.begin(&self.worlds[world], &mut bodies) {
+                    Ok((start, out)) => return Some(move || (world, simulate(start, out))),
+                    Err(outcome) => tell((world, outcome)),
+                }
+            }
+            None
+        };
+        take_turns((LaneKind::best(), self.together), wall_seconds, next, tell);
     }
 
-    /// `None`: stopped before its end.
-    fn simulate(&self, world: &WorldPoint) -> Result<Option<End>, String> {
-        let mut start = match self.document.start(world) {
-            Ok(start) => start,
-            Err((code, reason)) => return Ok(Some(End::Refused(code, reason))),
-        };
-        let out = self.file(world.index)?;
-        let files = Files { out: out.as_deref(), contacts: None };
-        let summary = start.run(&files, &mut Progress::silent())?;
-        Ok((summary["stopped"] != true).then(|| End::Made(summary, Box::new(start.world))))
+    /// A world before its first step, and the file of its rows. It shares the bodies of the one before it, if they are the same.
+    fn begin(&self, world: &WorldPoint, bodies: &mut Bodies) -> Result<(Start, Option<PathBuf>), Outcome> {
+        let refused = |(code, reason)| Ok(Some(End::Refused(code, reason)));
+        let mut start = self.document.start(world).map_err(refused)?;
+        start.world.share(bodies);
+        *bodies = start.world.model().bodies.clone();
+        let out = self.file(world.index).map_err(Err)?;
+        Ok((start, out))
     }
 
     fn file(&self, world: usize) -> Result<Option<PathBuf>, String> {
@@ -124,6 +140,14 @@ impl Work<'_> {
 }
 
 type Finished = (Vec<String>, Result<State, String>);
+/// `None`: stopped before its end.
+type Outcome = Result<Option<End>, String>;
+
+fn simulate(mut start: Start, out: Option<PathBuf>) -> Outcome {
+    let files = Files { out: out.as_deref(), contacts: None };
+    let summary = start.run(&files, &mut Progress::silent())?;
+    Ok((summary["stopped"] != true).then(|| End::Made(summary, Box::new(start.world))))
+}
 
 /// How a world ended, in short.
 #[derive(Clone, Copy)]

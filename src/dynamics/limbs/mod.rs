@@ -16,7 +16,7 @@ use super::{DofIn, Workspace};
 use crate::math::Lanes4;
 #[cfg(target_arch = "x86_64")]
 use crate::math::X4;
-use crate::math::{Lane, M3, Real, V3};
+use crate::math::{Flat, Lane, M3, Real, V3};
 use crate::model::Model;
 pub(super) use frames::Frames;
 use schedule::{Below, Place, Schedule, Step};
@@ -163,11 +163,11 @@ fn solve<const HYBRID: bool>(
     }
     for i in schedule.alone.iter().rev() {
         let mut own = ws.acc[*i];
-        inward::<f64, HYBRID>(m, ws, (*i, &mut own), (q, v), tau);
+        inward::<f64, HYBRID>(&m.bodies[*i], ws, (*i, &mut own), (q, v), tau);
     }
-    ws.start(gravity);
+    ws.start(V3::from(gravity));
     for i in &schedule.alone {
-        outward::<f64, HYBRID>(m, ws, *i, (q, v), qdd);
+        outward::<f64, HYBRID>(&m.bodies[*i], ws, *i, (q, v), qdd);
     }
     for (s, step) in steps.iter().enumerate() {
         let (mut a, l) =
@@ -182,7 +182,9 @@ fn solve<const HYBRID: bool>(
             qdd[step.v[lane]] = acceleration.numbers()[lane];
             if HYBRID {
                 ws.reaction[step.v[lane]] = reaction.numbers()[lane];
-                ws.kin[step.body[lane]] = single_kin(&kin[s], lane);
+                if !ws.frugal {
+                    ws.kin[step.body[lane]] = single_kin(&kin[s], lane);
+                }
             }
         }
     }
@@ -252,22 +254,22 @@ fn loaded(
     k.push(turning_bias(speed, (kin.w, kin.v)));
     *given = k.to_parent(&kin.r, step.p);
     for lane in (0..LANES).filter(|lane| input[*lane].plain) {
-        let acc = rows_mut(given).into_iter().zip(rows(&plain));
-        let dof = dof_rows_mut(dof).into_iter().zip(dof_rows(&plain_dof));
+        let acc = given.numbers_of_mut().iter_mut().zip(plain.numbers_of());
+        let dof = dof.numbers_of_mut().iter_mut().zip(plain_dof.numbers_of());
         acc.chain(dof).for_each(|(to, from)| to.numbers_mut()[lane] = from.numbers()[lane]);
     }
 }
 
 /// Adds what one body hands on, to one lane.
 fn add_lane((to, lane): (&mut Acc<X>, usize), (from, from_lane): (&Acc<X>, usize)) {
-    for (to, from) in rows_mut(to).into_iter().zip(rows(from)) {
+    for (to, from) in to.numbers_of_mut().iter_mut().zip(from.numbers_of()) {
         to.numbers_mut()[lane] += from.numbers()[from_lane];
     }
 }
 
 /// The same, to a body that is computed alone.
 fn add_single(to: &mut Acc<f64>, (from, lane): (&Acc<X>, usize)) {
-    for (to, from) in rows_mut(to).into_iter().zip(rows(from)) {
+    for (to, from) in to.numbers_of_mut().iter_mut().zip(from.numbers_of()) {
         *to += from.numbers()[lane];
     }
 }
@@ -285,34 +287,11 @@ fn single_kin(k: &Kin<X>, lane: usize) -> Kin<f64> {
 /// What the elimination leaves, to where it is read after the pass.
 fn export_dof(ws: &mut Workspace<f64>, step: &Step, dof: &Dof<X>) {
     for lane in (0..LANES).filter(|lane| step.own[*lane]) {
-        let to = dof_rows_mut(&mut ws.dof[step.v[lane]]);
-        to.into_iter().zip(dof_rows(dof)).for_each(|(to, from)| *to = from.numbers()[lane]);
+        if ws.frugal {
+            ws.dof[step.v[lane]].d = dof.d.numbers()[lane];
+            continue;
+        }
+        let to = ws.dof[step.v[lane]].numbers_of_mut();
+        to.iter_mut().zip(dof.numbers_of()).for_each(|(to, from)| *to = from.numbers()[lane]);
     }
-}
-
-fn rows<T>(a: &Acc<T>) -> [&T; 27] {
-    let (j, m, [h0, h1, h2]) = (&a.ia.j, &a.ia.m, &a.ia.h.r);
-    [
-        &j.xx, &j.xy, &j.xz, &j.yy, &j.yz, &j.zz, &m.xx, &m.xy, &m.xz, &m.yy, &m.yz, &m.zz, &h0.x, &h0.y, &h0.z, &h1.x,
-        &h1.y, &h1.z, &h2.x, &h2.y, &h2.z, &a.n.x, &a.n.y, &a.n.z, &a.f.x, &a.f.y, &a.f.z,
-    ]
-}
-
-fn rows_mut<T>(a: &mut Acc<T>) -> [&mut T; 27] {
-    let (j, m, [h0, h1, h2]) = (&mut a.ia.j, &mut a.ia.m, &mut a.ia.h.r);
-    let (n, f) = (&mut a.n, &mut a.f);
-    [
-        &mut j.xx, &mut j.xy, &mut j.xz, &mut j.yy, &mut j.yz, &mut j.zz, &mut m.xx, &mut m.xy, &mut m.xz, &mut m.yy,
-        &mut m.yz, &mut m.zz, &mut h0.x, &mut h0.y, &mut h0.z, &mut h1.x, &mut h1.y, &mut h1.z, &mut h2.x, &mut h2.y,
-        &mut h2.z, &mut n.x, &mut n.y, &mut n.z, &mut f.x, &mut f.y, &mut f.z,
-    ]
-}
-
-fn dof_rows<T>(d: &Dof<T>) -> [&T; 9] {
-    [&d.ua.x, &d.ua.y, &d.ua.z, &d.ul.x, &d.ul.y, &d.ul.z, &d.d, &d.x, &d.own]
-}
-
-fn dof_rows_mut<T>(d: &mut Dof<T>) -> [&mut T; 9] {
-    let (ua, ul) = (&mut d.ua, &mut d.ul);
-    [&mut ua.x, &mut ua.y, &mut ua.z, &mut ul.x, &mut ul.y, &mut ul.z, &mut d.d, &mut d.x, &mut d.own]
 }

@@ -6,7 +6,6 @@ use super::super::stage::robot;
 use super::{DOWN, SECOND};
 use crate::math::{Quat, Vec3};
 use crate::model::Base;
-use crate::world::Integrator;
 use std::fmt::Write;
 
 /// Length of a link of a chain, m.
@@ -45,7 +44,7 @@ pub(super) fn chain(name: &'static str, n: usize) -> Case {
         instants: 2 * SECOND,
         make: Box::new(move || robot(&text, Base::Fixed, DOWN, &|_, _| Ok(()))),
         looks: vec![Look::point(&format!("link{n}"), [LINK, 0.0, 0.0])],
-        truth: Truth::Own { integrator: Integrator::Rk4, steps_per_ms: 64 },
+        truth: Truth::Exact { steps: 32 },
         orders: None,
         iterates: false,
         peer_differs: None,
