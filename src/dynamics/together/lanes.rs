@@ -28,7 +28,7 @@ impl<T: Lane> Lanes<T> {
     /// Computes for robots with the bodies of this model, not more than there are lanes.
     #[inline(always)]
     pub fn solve(&mut self, m: &Model, requests: &[&Request]) {
-        if !self.bodies.is_shared_with(&m.bodies) && self.bodies != m.bodies {
+        if !self.bodies.is_shared_with(&m.bodies) {
             self.fit(m);
         }
         let gravity = self.gather(requests);
@@ -38,6 +38,10 @@ impl<T: Lane> Lanes<T> {
 
     #[cold]
     fn fit(&mut self, m: &Model) {
+        if self.bodies == m.bodies {
+            self.bodies = m.bodies.clone();
+            return;
+        }
         let zero = T::of(0.0);
         *self = Self {
             bodies: m.bodies.clone(),
